@@ -1,0 +1,190 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""One implicit time step of a structure under a given load: BDF2 with chord-Newton iterations.
+
+With d positions, w velocities and kappa = 3 / (2 dt), on the free degrees of freedom,
+
+    w = (3 d - 4 d_n + d_n-1) / (2 dt),    a = (3 w - 4 w_n + w_n-1) / (2 dt),
+    M (a + damping w) + f_int(d, V^2) = load(d, w),
+
+second order in dt and the scheme of the flow, so that both see the same wall velocity.
+"""
+
+from dataclasses import dataclass
+from typing import Callable, Protocol
+
+import numba
+import numpy as np
+from scipy.linalg import lu_factor, lu_solve
+
+from dewing_sim.errors import Diverged, NotConverged
+
+ITERATIONS = 30
+SHRINKAGE = 4.0     # a chord correction that shrinks by less is replaced by Newton's
+
+Load = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+class Structure(Protocol):
+    """What a time step needs of a structure; nodal arrays are (nodes, 2), forces per span."""
+
+    rest_position: np.ndarray
+    mass: np.ndarray                    # (nodes,), lumped
+
+    @property
+    def chord(self) -> float:
+        """Length to which corrections are compared."""
+
+    @property
+    def free(self) -> slice:
+        """Entries of a raveled nodal array that may move: m degrees of freedom."""
+
+    def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return the nodal gradient of the potential energy."""
+
+    def dense_tangent(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return its derivative (m, m) on the free degrees of freedom."""
+
+    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
+        """Raise `Slack` if the structure cannot carry its state."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Positions and velocities (nodes, 2) of the present and the previous time level."""
+
+    position: np.ndarray
+    velocity: np.ndarray
+    position_before: np.ndarray
+    velocity_before: np.ndarray
+
+    @classmethod
+    def at_rest(cls, position: np.ndarray) -> 'Motion':
+        """Return a structure that has been resting at ``position``."""
+        velocity = np.zeros_like(position)
+        return cls(position, velocity, position, velocity)
+
+    def predict(self, dt: float) -> np.ndarray:
+        """Return the position one step ahead, extrapolated with an error of order dt^3."""
+        return self.position + dt * (1.5 * self.velocity - 0.5 * self.velocity_before)
+
+
+@dataclass(frozen=True, eq=False)
+class Operator:
+    """Inverse of the iteration matrix at a reference state, made once and used in every step.
+
+    ``resistance`` (m, m) is -d(load)/d(velocity); ``inverse`` (m, m) is transposed, as
+    `_multiply` reads it.
+    """
+
+    resistance: np.ndarray
+    inverse: np.ndarray
+
+    @classmethod
+    def of(cls, structure: Structure, dt: float, resistance: np.ndarray | None = None,
+           damping: float = 0.0, position: np.ndarray | None = None, v_squared: float = 0.0,
+           ) -> 'Operator':
+        """Return the operator about ``position``, by default the structure's rest state.
+
+        The reference only sets the speed of convergence, never the result: a state near the
+        motion, such as the trimmed one, saves iterations.
+        """
+        position = structure.rest_position if position is None else position
+        m = structure.rest_position.ravel()[structure.free].size
+        resistance = np.zeros((m, m)) if resistance is None else np.array(resistance, dtype=float)
+        matrix = _iteration_matrix(structure, position, v_squared, dt, resistance, damping)
+        return cls(resistance, np.ascontiguousarray(np.linalg.inv(matrix).T))
+
+
+def _iteration_matrix(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
+                      resistance: np.ndarray, damping: float) -> np.ndarray:
+    """Return kappa^2 M + kappa (R + damping M) + K(position)."""
+    kappa = 1.5 / dt
+    mass = np.repeat(structure.mass, 2)[structure.free]
+    matrix = structure.dense_tangent(position, v_squared) + kappa * resistance
+    matrix[np.diag_indices_from(matrix)] += kappa * (kappa + damping) * mass
+    return matrix
+
+
+@numba.njit(cache=True)
+def _multiply(transposed, vector):
+    """Return ``transposed.T @ vector``, with a summation order that no BLAS thread changes."""
+    m = vector.size
+    result = np.zeros(m)
+    for column in range(0, m - 1, 2):
+        a, b = vector[column], vector[column + 1]
+        first, second = transposed[column], transposed[column + 1]
+        for row in range(m):
+            result[row] += a * first[row] + b * second[row]
+    if m % 2:
+        for row in range(m):
+            result[row] += vector[m - 1] * transposed[m - 1, row]
+    return result
+
+
+@numba.njit(cache=True)
+def _velocity(position, now, before, dt):
+    """Return the BDF2 derivative (3 x - 4 x_n + x_n-1) / (2 dt)."""
+    return (3.0 * position - 4.0 * now + before) / (2.0 * dt)
+
+
+@numba.njit(cache=True)
+def _imbalance(mass, velocity, now, before, dt, damping, internal, load):
+    """Return M (a + damping w) + f_int - load, (nodes, 2)."""
+    result = np.empty_like(velocity)
+    for i in range(mass.size):
+        for k in range(2):
+            rate = (3.0 * velocity[i, k] - 4.0 * now[i, k] + before[i, k]) / (2.0 * dt)
+            result[i, k] = (mass[i] * (rate + damping * velocity[i, k])
+                            + internal[i, k] - load[i, k])
+    return result
+
+
+def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, load: Load,
+            operator: Operator, damping: float = 0.0, tolerance: float = 1.0e-10,
+            guess: np.ndarray | None = None) -> Motion:
+    """Return the motion one step later, a pure function of the arguments.
+
+    ``load(position, velocity)`` returns the external nodal forces (nodes, 2), affine in velocity
+    with the slope -``operator.resistance``. ``damping`` is mass-proportional (1/time). Iterates
+    from ``guess`` (`Motion.predict` by default) until the largest correction falls below
+    ``tolerance`` chords. Raises `Slack`, `Diverged` or `NotConverged`.
+    """
+    position = np.array(motion.predict(dt) if guess is None else guess)
+    unknown = position.reshape(-1)[structure.free]
+    solve = _chord_solve(operator)
+    previous = np.inf
+    for iteration in range(ITERATIONS):
+        velocity = _velocity(position, motion.position, motion.position_before, dt)
+        residual = _imbalance(structure.mass, velocity, motion.velocity, motion.velocity_before,
+                              dt, damping, structure.internal_force(position, v_squared),
+                              load(position, velocity)).reshape(-1)[structure.free]
+        correction = solve(residual)
+        size = np.abs(correction).max()
+        if size > previous / SHRINKAGE and size > tolerance * structure.chord:
+            solve = _newton_solve(_iteration_matrix(
+                structure, position, v_squared, dt, operator.resistance, damping))
+            correction = solve(residual)
+            size = np.abs(correction).max()
+        if not np.isfinite(size):
+            raise Diverged(f'structure: non-finite residual or correction in iteration '
+                           f'{iteration}; check the load or reduce the time step', motion)
+        unknown -= correction
+        if size <= tolerance * structure.chord:
+            structure.require_taut(position, v_squared)
+            velocity = _velocity(position, motion.position, motion.position_before, dt)
+            return Motion(position, velocity, motion.position, motion.velocity)
+        previous = size
+    structure.require_taut(position, v_squared)
+    raise NotConverged(f'structure: largest correction {size / structure.chord:.3g} chords, '
+                       f'residual {np.abs(residual).max():.3g} after {ITERATIONS} iterations '
+                       f'(tolerance {tolerance:.3g}); reduce the time step', motion)
+
+
+def _chord_solve(operator: Operator):
+    return lambda residual: _multiply(operator.inverse, residual)
+
+
+def _newton_solve(matrix: np.ndarray):
+    factors = lu_factor(matrix, overwrite_a=True, check_finite=False)
+    return lambda residual: lu_solve(factors, residual, check_finite=False)

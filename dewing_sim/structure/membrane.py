@@ -1,0 +1,261 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Geometrically non-linear two-node membrane elements between two pinned edges.
+
+Each element carries the tension T(lambda, V^2) of a `Sheet` along its own direction, with the
+total stretch lambda = lambda_p * length / rest length, so rotations and extensions are arbitrary.
+Forces are per unit span; any consistent system of units.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numba
+import numpy as np
+from scipy.linalg import solve_banded
+
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput, Diverged, NotConverged, RunFailed, Slack
+from dewing_sim.scales import Scales
+from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer, Sheet
+
+SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
+BANDWIDTH = 3       # of the free degrees of freedom x1, y1, x2, y2, ... on either side
+
+
+@numba.njit(cache=True)
+def _edges(position):
+    """Return rows direction x, direction y, length of the elements, (3, n)."""
+    n = position.shape[0] - 1
+    edges = np.empty((3, n))
+    for k in range(n):
+        dx = position[k + 1, 0] - position[k, 0]
+        dy = position[k + 1, 1] - position[k, 1]
+        length = math.sqrt(dx * dx + dy * dy)
+        edges[0, k], edges[1, k], edges[2, k] = dx / length, dy / length, length
+    return edges
+
+
+@numba.njit(cache=True)
+def _assemble_force(edges, tension):
+    """Return the gradient of the energy, (n+1, 2): each element pulls its nodes together."""
+    n = tension.size
+    force = np.zeros((n + 1, 2))
+    for k in range(n):
+        fx, fy = tension[k] * edges[0, k], tension[k] * edges[1, k]
+        force[k, 0] -= fx
+        force[k, 1] -= fy
+        force[k + 1, 0] += fx
+        force[k + 1, 1] += fy
+    return force
+
+
+@numba.njit(cache=True)
+def _assemble_tangent(edges, tension, stiffness, pressure):
+    """Return the banded derivative of internal minus follower-pressure force, (7, 2(n-1)).
+
+    ``stiffness`` is dT / d length. Both nodes of an element get p/2 (-dy, dx).
+    """
+    n = tension.size
+    band = np.zeros((7, 2 * (n - 1)))
+    block = np.empty((2, 2))
+    for k in range(n):
+        ex, ey = edges[0, k], edges[1, k]
+        across = tension[k] / edges[2, k]
+        along = stiffness[k] - across
+        block[0, 0] = along * ex * ex + across
+        block[1, 1] = along * ey * ey + across
+        block[0, 1] = block[1, 0] = along * ex * ey
+        half = 0.5 * pressure[k]
+        for a in range(2):
+            for b in range(2):
+                row, column = 2 * (k - 1 + a), 2 * (k - 1 + b)
+                if row < 0 or column < 0 or row >= band.shape[1] or column >= band.shape[1]:
+                    continue
+                sign = 1.0 if a == b else -1.0
+                turn = half if b == 0 else -half
+                band[3 + row - column, column] += sign * block[0, 0]
+                band[4 + row - column, column] += sign * block[1, 0] + turn
+                band[2 + row - column, column + 1] += sign * block[0, 1] - turn
+                band[3 + row - column, column + 1] += sign * block[1, 1]
+    return band
+
+
+@numba.njit(cache=True)
+def dense(band):
+    """Return the full matrix of a (7, m) band in the layout of `scipy.linalg.solve_banded`."""
+    m = band.shape[1]
+    matrix = np.zeros((m, m))
+    for column in range(m):
+        for row in range(max(0, column - 3), min(m, column + 4)):
+            matrix[row, column] = band[3 + row - column, column]
+    return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Membrane:
+    """A prestretched sheet between pinned edges at (0, 0) and (chord, 0).
+
+    ``rest_position`` (n+1, 2) is the flat prestretched state without load; ``mass`` (n+1,) is
+    lumped at the nodes, per unit span.
+    """
+
+    sheet: Sheet
+    prestretch: float
+    rest_position: np.ndarray
+    mass: np.ndarray
+
+    @classmethod
+    def uniform(cls, sheet: Sheet, prestretch: float, density: float, chord: float,
+                elements: int) -> 'Membrane':
+        """Return a membrane of equal elements; ``density`` is that of the elastomer."""
+        if elements < 2:
+            raise BadInput(f'elements = {elements} is out of range: at least 2')
+        position = np.zeros((elements + 1, 2))
+        position[:, 0] = chord * np.arange(elements + 1) / elements
+        surface_density = (density * sheet.initial_thickness
+                           / (prestretch * sheet.lateral_stretch))
+        mass = np.full(elements + 1, surface_density * chord / elements)
+        mass[[0, -1]] *= 0.5
+        return cls(sheet, prestretch, position, mass)
+
+    @classmethod
+    def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Membrane':
+        """Return the membrane of a parameter section in the units of ``scales``.
+
+        Voltages stay in volt: the permittivity is taken in units of pressure length^2 / V^2.
+        """
+        elastomer = Elastomer(
+            section.shear_modulus / scales.pressure, section.gent_limit,
+            section.bulk_modulus / scales.pressure,
+            VACUUM_PERMITTIVITY * section.relative_permittivity
+            / (scales.pressure * scales.length ** 2))
+        sheet = Sheet(elastomer, section.initial_thickness / scales.length,
+                      section.prestretch_lateral)
+        return cls.uniform(sheet, section.prestretch, section.density / scales.density,
+                           section.chord / scales.length, section.elements)
+
+    @property
+    def elements(self) -> int:
+        """Number of elements n."""
+        return self.mass.size - 1
+
+    @property
+    def chord(self) -> float:
+        """Distance between the pinned edges."""
+        return float(self.rest_position[-1, 0])
+
+    @property
+    def free(self) -> slice:
+        """Entries of a raveled (n+1, 2) array that may move."""
+        return slice(2, 2 * self.elements)
+
+    @cached_property
+    def stretch_per_length(self) -> np.ndarray:
+        """lambda_p / rest length, (n,)."""
+        return self.prestretch / _edges(self.rest_position)[2]
+
+    def stretch(self, position: np.ndarray) -> np.ndarray:
+        """Return the total stretches (n,)."""
+        return _edges(position)[2] * self.stretch_per_length
+
+    def tension(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return the tensions (n,), force per unit span; negative where the sheet is slack."""
+        return self.sheet.respond(self.stretch(position), v_squared).tension
+
+    def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return the gradient (n+1, 2) of the potential energy in ``position`` (n+1, 2)."""
+        edges = _edges(position)
+        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
+        return _assemble_force(edges, response.tension)
+
+    def tangent(self, position: np.ndarray, v_squared: float, pressure=0.0) -> np.ndarray:
+        """Return d(internal force)/d(position) of the free nodes as a band (7, 2(n-1)).
+
+        The layout is that of `scipy.linalg.solve_banded` with bandwidths (3, 3). A non-zero
+        ``pressure``, scalar or (n,), subtracts the stiffness of that follower load.
+        """
+        edges = _edges(position)
+        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
+        return _assemble_tangent(edges, response.tension,
+                                 response.stiffness * self.stretch_per_length,
+                                 np.full(self.elements, pressure, dtype=float))
+
+    def dense_tangent(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return `tangent` as a full matrix (2(n-1), 2(n-1))."""
+        return dense(self.tangent(position, v_squared))
+
+    def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
+        """Return the nodal forces (n+1, 2) of a pressure jump, scalar or (n,), pushing to +y."""
+        step = np.diff(position, axis=0)
+        half = 0.5 * np.reshape(pressure, (-1, 1)) * np.stack([-step[:, 1], step[:, 0]], axis=1)
+        force = np.zeros_like(position)
+        force[:-1] += half
+        force[1:] += half
+        return force
+
+    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
+        """Raise `Slack` with element, tension and voltages if any tension is not positive."""
+        tension = self.tension(position, v_squared)
+        k = int(np.argmin(tension))
+        if tension[k] > 0.0:
+            return
+        limit = self.sheet.loss_of_tension_v_squared(self.stretch(position)[k])
+        raise Slack(f'slack membrane: element {k} has tension {tension[k]:.6g} at '
+                    f'{math.sqrt(v_squared):.6g} V and loses it at {math.sqrt(limit):.6g} V; '
+                    'lower the voltage or raise the prestretch')
+
+    def equilibrium(self, pressure, v_squared: float, follower: bool = True) -> np.ndarray:
+        """Return the static position (n+1, 2) under a pressure jump, scalar or (n,).
+
+        Newton from the flat state, first in pressure, then in V^2, in as few load steps as
+        converge. A ``follower`` pressure stays normal to the membrane, otherwise to the chord.
+        Raises `Slack`, `Diverged` or `NotConverged` at the load that could not be passed.
+        """
+        pressure = np.asarray(pressure, dtype=float)
+        passive = _march(lambda position, share: self._newton(
+            position, share * pressure, 0.0, follower), self.rest_position)
+        return _march(lambda position, share: self._newton(
+            position, pressure, share * v_squared, follower), passive)
+
+    def _newton(self, position: np.ndarray, pressure, v_squared: float, follower: bool,
+                ) -> np.ndarray:
+        force = self.pressure_force(self.rest_position, pressure)
+        for _ in range(40):
+            if follower:
+                force = self.pressure_force(position, pressure)
+            residual = (self.internal_force(position, v_squared) - force).ravel()[self.free]
+            band = self.tangent(position, v_squared, pressure if follower else 0.0)
+            correction = _solve(band, residual)
+            position = position.copy()
+            position.reshape(-1)[self.free] -= correction
+            if np.abs(correction).max() <= 1.0e-12 * self.chord:
+                self.require_taut(position, v_squared)
+                return position
+        raise NotConverged(f'static equilibrium at {math.sqrt(v_squared):.6g} V: correction '
+                           f'{np.abs(correction).max():.3g} after 40 iterations; '
+                           'reduce pressure or voltage')
+
+
+def _solve(band: np.ndarray, residual: np.ndarray) -> np.ndarray:
+    try:
+        return solve_banded((BANDWIDTH, BANDWIDTH), band, residual)
+    except (np.linalg.LinAlgError, ValueError):
+        raise Diverged('the stiffness is singular or not finite; '
+                       'the membrane carries no tension') from None
+
+
+def _march(solve, position: np.ndarray) -> np.ndarray:
+    """Raise the share of a load from 0 to 1, halving the step on failure, doubling after."""
+    share, step = 0.0, 1.0
+    while share < 1.0:
+        try:
+            position = solve(position, min(1.0, share + step))
+        except RunFailed:
+            step *= 0.5
+            if step < 1.0e-4:
+                raise
+        else:
+            share, step = share + step, 2.0 * step
+    return position
