@@ -1,0 +1,38 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+# Every target sets up what it needs. PYTHON=... and VENV=... choose the interpreter and the folder.
+
+VENV ?= .venv
+BIN = $(VENV)/bin
+PYTEST_OPTIONS ?=
+DEMO_OPTIONS ?=
+BENCH_OPTIONS ?=
+
+.PHONY: help venv demo test lint bench clean
+
+help:
+	@echo 'make demo   the closed loop over ROS 2: simulator and controller as two processes'
+	@echo 'make test   linters and tests'
+	@echo 'make lint   linters'
+	@echo 'make bench  time per step'
+	@echo 'make venv   set up $(VENV) only'
+	@echo 'make clean  remove what was built, but not results in out/'
+
+venv:
+	@python="$$(sh scripts/find_python)" && "$$python" scripts/environment.py '$(VENV)'
+
+demo: venv
+	@$(BIN)/dewing demo $(DEMO_OPTIONS)
+
+lint: venv
+	@$(BIN)/ruff check .
+	@$(BIN)/flake8
+
+test: lint
+	@$(BIN)/python -m pytest $(PYTEST_OPTIONS)
+
+bench: venv
+	@$(BIN)/python benchmarks/bench.py $(BENCH_OPTIONS)
+
+clean:
+	rm -rf '$(VENV)' build dist install log *.egg-info .pytest_cache .ruff_cache .hypothesis

@@ -1,0 +1,154 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Make the virtual environment of ``make venv``; do nothing when it is current.
+
+Usage: ``python3 environment.py FOLDER``. Standard library only. ROS comes from a sourced system
+ROS if there is one, else from wheels where they exist; everything offline works without it.
+"""
+
+import hashlib
+import os
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[1]
+INGREDIENTS = ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'scripts/environment.py')
+EXECUTABLES = ('simulator', 'controller', 'recorder')
+REASONS = {
+    'system': 'ROS: the sourced system ROS is used, since AMENT_PREFIX_PATH is set and this '
+              'Python imports rclpy; the ROS wheels are left out.',
+    'wheels': 'ROS: no usable system ROS is sourced, so the ros-jazzy wheels are installed.',
+    'none': 'ROS: wheels exist only for x86_64 Linux with Python 3.10 to 3.13, so the nodes and '
+            'the demo need a sourced system ROS or a container; every offline command works.',
+}
+
+
+def ros_source() -> str:
+    """Return where ROS comes from: 'system', 'wheels' or 'none'."""
+    if os.environ.get('AMENT_PREFIX_PATH') and _runs(sys.executable, 'import rclpy'):
+        return 'system'
+    has_wheels = (sys.platform == 'linux' and platform.machine() == 'x86_64'
+                  and (3, 10) <= sys.version_info[:2] <= (3, 13))
+    return 'wheels' if has_wheels else 'none'
+
+
+def recipe(folder: Path, source: str) -> str:
+    """Return what the environment depends on, as the text of its stamp."""
+    digest = hashlib.sha256()
+    for name in INGREDIENTS:
+        digest.update((PROJECT / name).read_bytes())
+    version = '.'.join(map(str, sys.version_info[:2]))
+    return f'{digest.hexdigest()}\nPython {version}\nROS {source}\n{folder}\n{PROJECT}\n'
+
+
+def create(folder: Path, source: str) -> None:
+    """Create ``folder`` unless it already is an environment of this Python and ROS source."""
+    python = folder / 'bin' / 'python'
+    version = f'assert sys.version_info[:2] == {sys.version_info[:2]}'
+    prefix = f'assert os.path.realpath(sys.prefix) == {str(folder)!r}'
+    settings = folder / 'pyvenv.cfg'
+    wanted = 'system-site-packages = ' + ('true' if source == 'system' else 'false')
+    if folder.exists():
+        if (settings.is_file() and wanted in settings.read_text()
+                and _runs(str(python), f'import os, sys, pip; {version}; {prefix}')):
+            print(f'Updating {folder.name}.')
+            return
+        if not settings.is_file():
+            sys.exit(f'{folder} is in the way: it is not a virtual environment.')
+        print(f'Making {folder.name} anew: it belongs to another Python, ROS or place.')
+        shutil.rmtree(folder)
+    option = ['--system-site-packages'] if source == 'system' else []
+    subprocess.run([sys.executable, '-m', 'venv', *option, str(folder)], check=True)
+
+
+def install(folder: Path, source: str) -> None:
+    """Install the project, editable, with its test tools and, if ``source`` is wheels, ROS."""
+    extras = 'ros,test,lint' if source == 'wheels' else 'test,lint'
+    command = [str(folder / 'bin' / 'python'), '-m', 'pip', 'install', '--progress-bar', 'off',
+               '--disable-pip-version-check', '--editable', f'{PROJECT}[{extras}]']
+    old_numpy = 'import numpy; assert numpy.__version__ < "2"'
+    if source == 'system' and _runs(sys.executable, old_numpy):
+        command.append('numpy<2')       # the messages of this ROS are compiled against NumPy 1
+    log = folder / 'install.log'
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               text=True, errors='replace')
+    with open(log, 'w') as file:
+        _show_progress(process.stdout, file)
+    if process.wait():
+        tail = [line for line in log.read_text().splitlines() if 'error' in line.lower()]
+        sys.exit('\n'.join(['pip could not install the packages:', *tail[-5:], f'See {log}']))
+
+
+def _show_progress(lines, file) -> None:
+    """Copy pip's output to ``file`` and show one line that counts the packages."""
+    packages = 0
+    live = sys.stdout.isatty()
+    for line in lines:
+        file.write(line)
+        found = re.match(r'\s*(Collecting|Installing collected packages)\s*(\S*)', line)
+        if not found:
+            continue
+        packages += found[1] == 'Collecting'
+        text = (f'  collecting package {packages}: {found[2]}' if found[1] == 'Collecting'
+                else f'  installing {line.count(",") + 1} packages')
+        if live:
+            print(f'\r{text[:70]:70}', end='', flush=True)
+        elif found[1] != 'Collecting' or packages % 25 == 1:
+            print(text, flush=True)
+    if live:
+        print('\r' + ' ' * 70, end='\r')
+
+
+def add_to_ament_index(folder: Path) -> None:
+    """Put the marker and the executables where ``ros2 run`` looks, below ``folder``.
+
+    The executables are links to the console scripts, which name this environment's Python.
+    """
+    marker = folder / 'share' / 'ament_index' / 'resource_index' / 'packages' / 'dewing'
+    library = folder / 'lib' / 'dewing'
+    for parent in (marker.parent, library):
+        parent.mkdir(parents=True, exist_ok=True)
+    marker.touch()
+    for name in EXECUTABLES:
+        link = library / name
+        link.unlink(missing_ok=True)
+        link.symlink_to(Path('..', '..', 'bin', f'dewing_{name}'))
+
+
+def _runs(python: str, code: str) -> bool:
+    """Whether ``python`` runs ``code``."""
+    try:
+        return not subprocess.run([python, '-c', code], capture_output=True).returncode
+    except OSError:
+        return False
+
+
+def main() -> None:
+    """Bring the environment named on the command line up to date."""
+    folder = Path(sys.argv[1]).resolve()
+    source = ros_source()
+    stamp = folder / 'dewing.stamp'
+    wanted = recipe(folder, source)
+    if stamp.is_file() and stamp.read_text() == wanted:
+        return
+    started = time.monotonic()
+    print(f'Python: {sys.executable} ({platform.python_version()}).')
+    print(REASONS[source], flush=True)
+    create(folder, source)
+    stamp.unlink(missing_ok=True)
+    install(folder, source)
+    add_to_ament_index(folder)
+    if source != 'none' and not _runs(str(folder / 'bin' / 'python'), 'import rclpy'):
+        sys.exit('ROS is installed but rclpy cannot be imported: '
+                 f'try {folder}/bin/python -c "import rclpy".')
+    stamp.write_text(wanted)
+    print(f'{folder.name} is ready after {time.monotonic() - started:.0f} s.')
+
+
+if __name__ == '__main__':
+    main()

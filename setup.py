@@ -1,0 +1,71 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Install dewing with pip or colcon: one layout serves both.
+
+colcon puts the console scripts into ``lib/dewing`` (setup.cfg); pip puts them into ``bin``, where
+``ros2 run`` does not look, so the wrappers in ``scripts`` are installed to ``lib/dewing`` as data.
+"""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+EXECUTABLES = ('simulator', 'controller', 'recorder')
+ROS_WHEELS = ('; sys_platform == "linux" and platform_machine == "x86_64"'
+              ' and python_version < "3.14"')
+
+setup(
+    name='dewing',
+    version='0.1.0',
+    description='Membrane wings of dielectric elastomer in viscous flow, and their control',
+    long_description=open('README.md', encoding='utf-8').read(),
+    long_description_content_type='text/markdown',
+    author='The dewing authors',
+    maintainer='The dewing authors',
+    license='Apache-2.0',
+    python_requires='>=3.10',
+    packages=[*find_packages(include=['dewing_*']), 'dewing_config'],
+    package_dir={'dewing_config': 'config'},
+    package_data={'dewing_config': ['*.yaml']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/dewing']),
+        ('share/dewing', ['package.xml']),
+        ('share/dewing/config', sorted(glob('config/*.yaml'))),
+        ('lib/dewing', [f'scripts/{name}' for name in EXECUTABLES]),
+    ],
+    install_requires=[
+        'matplotlib>=3.6',
+        'mcap>=1.1',
+        'numba>=0.59',
+        'numpy>=1.23',
+        'pyyaml>=6.0',
+        'rich>=12.0',
+        'scipy>=1.10',
+    ],
+    extras_require={
+        'ros': [package + ROS_WHEELS for package in (
+            'ros-jazzy-rclpy',
+            'ros-jazzy-common-interfaces',
+            'ros-jazzy-rmw-fastrtps-cpp',
+        )],
+        'test': [
+            'hypothesis>=6.60',
+            'pytest>=7.4',
+            'pytest-timeout>=2.1',
+            'rosbags>=0.9.20',
+        ],
+        'lint': [
+            'flake8>=6.0',
+            'ruff>=0.5',
+        ],
+    },
+    entry_points={
+        'console_scripts': [
+            'dewing = dewing_control.cli:main',
+            'dewing_simulator = dewing_sim.node:main',
+            'dewing_controller = dewing_control.node:main',
+            'dewing_recorder = dewing_sim.recorder:main',
+        ],
+    },
+    zip_safe=False,
+)
