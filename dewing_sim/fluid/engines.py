@@ -1,0 +1,13 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The flow engines by name."""
+
+from dewing_sim.fluid.base import Fluid
+from dewing_sim.fluid.finite_volume.engine import FiniteVolume
+
+ENGINES = {'finite_volume': FiniteVolume}
+
+
+def make(engine: str, grid: str, reynolds: float, alpha: float, dt: float) -> Fluid:
+    """Return an engine on a grid preset; ``alpha`` in rad, ``dt`` in c/U."""
+    return ENGINES[engine].preset(grid, reynolds, alpha, dt)

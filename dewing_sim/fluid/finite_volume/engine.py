@@ -1,0 +1,233 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The finite-volume engine: one time step of the flow, short of the wall's final velocity.
+
+A step is momentum (BDF2, delta form, ADI) and projection (direct).  `predict` carries both up to
+the pressure jump, which is affine in the wall velocity; `correct` finishes the projection once the
+membrane has answered.  So the membrane is solved inside the pressure equation and the coupling is
+stable at any mass ratio.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dewing_sim.errors import Diverged
+from dewing_sim.fluid.base import Loads, Prediction, Wall
+from dewing_sim.fluid.finite_volume import adi, mapping, momentum, projection, transport
+from dewing_sim.fluid.finite_volume.grid import PRESETS, Grid, build
+from dewing_sim.fluid.finite_volume.poisson import Poisson
+from dewing_sim.fluid.finite_volume.potential import Potential
+
+UPWIND_SHARE = 0.5                  # in the far field only
+UPWIND_START, UPWIND_FULL = 1.0, 4.0    # chords from the plate
+FASTEST = 50.0                      # |u| in free-stream speeds beyond which a run has diverged
+
+
+@dataclass(frozen=True)
+class FlowState:
+    """Everything the next step depends on; faces as in `Grid`, speeds in U."""
+
+    u: np.ndarray                   # (nx + 1, ny)
+    v: np.ndarray                   # (nx, ny + 1)
+    fx: np.ndarray                  # Fx, flux through xi-faces
+    w: np.ndarray                   # Fy - g Y_t, flux through the moving eta-faces
+    p: np.ndarray                   # (nx, ny) pressure in rho U^2
+    u_before: np.ndarray            # one step earlier
+    v_before: np.ndarray
+    fx_before: np.ndarray
+    w_before: np.ndarray
+    height: np.ndarray              # wall heights at the column faces
+    velocity: np.ndarray            # wall velocities of the columns
+    circulation: float              # of wing and wake together, in U c
+
+
+@dataclass(frozen=True)
+class _Fields:
+    """An unfinished step: predicted fluxes and the modal pressure increment."""
+
+    state: FlowState
+    metrics: mapping.Metrics
+    fx: np.ndarray
+    fy: np.ndarray
+    even_hat: np.ndarray
+    odd_hat: np.ndarray
+    increment: np.ndarray           # jump of phi, above minus below, for the predicted wall
+
+
+class FiniteVolume:
+    """Incompressible Navier-Stokes flow on a membrane-following grid, see `base.Fluid`."""
+
+    def __init__(self, grid: Grid, reynolds: float, alpha: float, dt: float):
+        """Prepare a grid for one Reynolds number, angle of attack (rad) and dt (c/U)."""
+        self.grid = grid
+        self.nu = 1.0 / reynolds
+        self.alpha = alpha
+        self.dt = dt
+        self.theta = 2.0 * dt / 3.0
+        self.columns = grid.columns
+        self.poisson = Poisson.of(grid)
+        self.resistance = self.poisson.added_mass / self.theta
+        self.potential = Potential.of(grid, alpha)
+        self._g = mapping.decay(grid)
+        self._upwind_x = _upwind(np.maximum(-grid.x, grid.x - 1.0))
+        self._upwind_y = _upwind(np.abs(grid.y))
+        self._upwind_xc = _upwind(np.maximum(-grid.xc, grid.xc - 1.0))
+        self._upwind_yc = _upwind(np.abs(grid.yc))
+        self._blocked = _blocked(grid)
+
+    @classmethod
+    def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'FiniteVolume':
+        """Return the engine on a named grid (`grid.PRESETS`)."""
+        return cls(build(PRESETS[name]), reynolds, alpha, dt)
+
+    def rest(self, wall: Wall, circulation: float) -> FlowState:
+        """Return the potential flow with the given bound circulation (U c), about to feel no slip.
+
+        The fluxes of the flat plate serve a cambered wall: they do not cross its grid line.
+        """
+        metrics = mapping.metrics(self.grid, wall)
+        fx, fy = self.potential.fluxes(circulation)
+        u, v = projection.velocities(self.grid, self._g, metrics, fx, fy)
+        w = fy - np.outer(metrics.velocity, self._g.f)
+        p = np.zeros((len(self.grid.dx), len(self.grid.dy)))
+        return FlowState(u, v, fx, w, p, u, v, fx, w, wall.height, wall.velocity, circulation)
+
+    def with_circulation(self, state: FlowState, circulation: float) -> FlowState:
+        """Return ``state`` with the far-field values of another total circulation (U c)."""
+        u, v, fx, w = (field.copy() for field in (state.u, state.v, state.fx, state.w))
+        far_x, far_y = self.potential.fluxes(circulation)
+        for field in (u, fx):
+            field[0] = far_x[0]
+            field[1:, [0, -1]] = far_x[1:, [0, -1]]
+        for field in (v, w):
+            field[0] = far_y[0]
+            field[1:, [0, -1]] = far_y[1:, [0, -1]]
+        return replace(state, u=u, v=v, fx=fx, w=w, circulation=circulation)
+
+    def predict(self, state: FlowState, wall: Wall) -> Prediction:
+        """Advance momentum and the forward half of the projection with the wall in place."""
+        metrics = mapping.metrics(self.grid, wall)
+        u, v = self._momentum(state, metrics, wall)
+        fx, fy = projection.fluxes(self.grid, self._g, metrics, u, v)
+        outflow = projection.divergence(fx, fy, self.grid.dx, self.grid.dy)
+        even_hat, odd_hat, increment = self.poisson.forward(outflow / self.theta)
+        jump = self._jump(state.p) - increment
+        if not np.isfinite(jump).all():
+            raise Diverged('the flow became non-finite: lower the time step or refine the grid')
+        return Prediction(wall, jump,
+                          _Fields(state, metrics, fx, fy, even_hat, odd_hat, increment))
+
+    def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
+        """Finish the projection with the wall velocity (n,) of the columns."""
+        fields: _Fields = prediction.fields
+        grid, state = self.grid, fields.state
+        change = velocity - prediction.wall.velocity
+        fx, fy = fields.fx, fields.fy.copy()
+        fy[grid.plate, grid.middle] = velocity
+        phi = self.poisson.backward(
+            fields.even_hat, fields.odd_hat, fields.increment + self.resistance @ change,
+            grid.dx[grid.plate] * change / self.theta)
+        fx = fx.copy()
+        projection.correct(fx, fy, phi, grid.dxf, grid.dyf, self.theta,
+                           grid.leading, grid.trailing)
+        u, v = projection.velocities(grid, self._g, fields.metrics, fx, fy)
+        motion = fields.metrics.velocity.copy()
+        motion[grid.plate] = velocity
+        self._guard(u)
+        return FlowState(u, v, fx, fy - np.outer(motion, self._g.f), state.p + phi,
+                         state.u, state.v, state.fx, state.w,
+                         prediction.wall.height, velocity, state.circulation)
+
+    def loads(self, state: FlowState) -> Loads:
+        """Integrate pressure and wall shear over both sides of the wing."""
+        grid = self.grid
+        jump = self._jump(state.p)
+        dx, middle = grid.dx[grid.plate], grid.middle
+        jacobian = 1.0 + mapping.metrics(grid, Wall(state.height, state.velocity)).height_f * (
+            self._g.dc[middle])
+        shear = self.nu * (state.u[:, middle - 1] + state.u[:, middle]) / (
+            0.5 * grid.dy[middle] * jacobian)
+        normal = np.sum(jump * dx)
+        axial = (np.sum(shear * self._blocked * grid.dxf)
+                 - np.sum(jump * np.diff(state.height)))
+        moment = -np.sum(jump * dx * (grid.xc[grid.plate] - 0.25))
+        cos, sin = np.cos(self.alpha), np.sin(self.alpha)
+        return Loads(jump, cl=2.0 * float(normal * cos - axial * sin),
+                     cd=2.0 * float(normal * sin + axial * cos), cm=2.0 * float(moment))
+
+    def _momentum(self, state: FlowState, m: mapping.Metrics, wall: Wall,
+                  ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the velocities that satisfy momentum with the old pressure."""
+        fx = 2.0 * state.fx - state.fx_before
+        w = 2.0 * state.w - state.w_before
+        return self._solve_u(state, m, fx, w), self._solve_v(state, m, wall, fx, w)
+
+    def _solve_u(self, state, m, fx, w) -> np.ndarray:
+        grid, g = self.grid, self._g
+        west, east, south, north, change = _scratch(5, state.u.shape)
+        drag = np.zeros((2, len(grid.x)))
+        transport.u_coefficients(
+            fx, w, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c, m.height_f, m.slope_f,
+            g.f, g.dc, g.df, self._upwind_x, self._upwind_yc, self._blocked, self.nu, self.theta,
+            west, east, south, north, drag)
+        momentum.u_explicit(
+            state.u, state.u_before, state.p, self.potential.outlet_pressure(state.circulation),
+            west, east, south, north, drag, grid.dxf, self.theta, change)
+        momentum.u_slope_terms(
+            state.u, state.u_before, state.p, grid.dx, grid.dy, grid.dxf, grid.dyf,
+            m.height_f, m.slope_c, m.slope_f, g.c, g.f, g.dc, self._blocked,
+            grid.leading, grid.trailing, self.nu, self.theta, change)
+        ratio = np.empty_like(change)
+        adi.sweep_x(change, west, east, ratio, len(grid.x))
+        adi.sweep_y(change, south, north, drag, len(grid.x))
+        return state.u + change
+
+    def _solve_v(self, state, m, wall, fx, w) -> np.ndarray:
+        grid, g = self.grid, self._g
+        west, east, south, north, change = _scratch(5, state.v.shape)
+        transport.v_coefficients(
+            fx, w, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c, m.height_f, m.slope_c,
+            g.c, g.dc, g.df, self._upwind_xc, self._upwind_y, grid.leading, grid.trailing,
+            self.nu, self.theta, west, east, south, north)
+        momentum.v_explicit(
+            state.v, state.v_before, state.p, west, east, south, north, grid.dyf,
+            m.height_c, g.df, self.theta, change)
+        momentum.v_slope_terms(
+            state.v, state.v_before, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c,
+            m.slope_c, m.slope_f, g.c, g.f, g.df, grid.leading, grid.trailing,
+            self.nu, self.theta, change)
+        change[grid.plate, grid.middle] = wall.velocity - state.velocity
+        ratio = np.empty_like(change)
+        adi.sweep_x(change, west, east, ratio, len(grid.dx))
+        adi.sweep_y(change, south, north, np.zeros((2, len(grid.dx))), len(grid.dx))
+        return state.v + change
+
+    def _jump(self, p: np.ndarray) -> np.ndarray:
+        """Return the pressure jump, below minus above, of the columns on the plate."""
+        plate, middle = self.grid.plate, self.grid.middle
+        return p[plate, middle - 1] - p[plate, middle]
+
+    def _guard(self, u: np.ndarray) -> None:
+        fastest = np.abs(u).max()
+        if not fastest < FASTEST:
+            raise Diverged(f'the flow reached {fastest:.3g} free-stream speeds: '
+                           'lower the time step or refine the grid')
+
+
+def _scratch(number: int, shape: tuple[int, int]) -> np.ndarray:
+    return np.zeros((number, *shape))
+
+
+def _upwind(distance: np.ndarray) -> np.ndarray:
+    """Return the share of upwinding at a distance (c) from the plate: zero near the membrane."""
+    ramp = (distance - UPWIND_START) / (UPWIND_FULL - UPWIND_START)
+    return UPWIND_SHARE * np.clip(ramp, 0.0, 1.0)
+
+
+def _blocked(grid: Grid) -> np.ndarray:
+    """Return the share (nx + 1,) of the control volume of u that lies on the plate."""
+    on_plate = np.zeros(len(grid.dx))
+    on_plate[grid.plate] = grid.dx[grid.plate]
+    padded = np.concatenate(([0.0], on_plate, [0.0]))
+    return 0.5 * (padded[1:] + padded[:-1]) / grid.dxf
