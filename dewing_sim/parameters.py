@@ -138,7 +138,7 @@ def check(name: str, field: dataclasses.Field, value: Any) -> Any:
     """Return ``value`` if ``field`` admits it; raise `BadInput` otherwise."""
     wanted = field.metadata['type']
     if type(value) is not wanted:
-        hint = ' (write it with a decimal point, as in 1.0 or 1.0e-4)' if wanted is float else ''
+        hint = _FLOAT_HINT if wanted is float else ''
         raise BadInput(f'{name} = {value!r} is not a {_TYPE_NAMES[wanted]}{hint}: '
                        f'{describe(field)}')
     if 'options' in field.metadata:
@@ -151,6 +151,8 @@ def check(name: str, field: dataclasses.Field, value: Any) -> Any:
 
 
 _TYPE_NAMES = {float: 'floating-point number', int: 'whole number', str: 'word'}
+# YAML 1.1 reads 1e-4 and 1.0e4 as words, and ROS refuses an integer for a double.
+_FLOAT_HINT = ' (write it with a decimal point and a signed exponent, as in 1.0 or 2.0e+4)'
 
 
 def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section:
@@ -208,7 +210,10 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     name, equals, value = text.partition('=')
     if not equals or not name:
         raise BadInput(f'{text!r} is not of the form section.key=value')
-    return name.strip(), yaml.safe_load(value)
+    try:
+        return name.strip(), yaml.safe_load(value)
+    except yaml.YAMLError as error:
+        raise BadInput(f'{text!r} has no readable value ({_one_line(error)})') from None
 
 
 def config_file(name: str, directory: str | None = None) -> Path:
@@ -245,7 +250,7 @@ def load(name: str, schema: type[Section] = Case, changes: Mapping[str, Any] | N
     """
     path = config_file(name)
     try:
-        tree = yaml.safe_load(path.read_text())
+        tree = yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
         parameters = tree['/**']['ros__parameters']
     except yaml.YAMLError as error:
         raise BadInput(f'{path}: not valid YAML ({_one_line(error)})') from None
@@ -258,6 +263,18 @@ def load(name: str, schema: type[Section] = Case, changes: Mapping[str, Any] | N
     except BadInput as error:
         raise BadInput(f'{path}: {error}') from None
     return replace(section, changes) if changes else section
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """A YAML loader that refuses a repeated key instead of taking its last value."""
+
+    def construct_mapping(self, node, deep=False):
+        keys = [self.construct_object(key, deep) for key, _ in node.value]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise yaml.constructor.ConstructorError(
+                    None, None, f'{key} is given twice', node.start_mark)
+        return super().construct_mapping(node, deep)
 
 
 def _one_line(error: Exception) -> str:

@@ -1,0 +1,29 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Settings every test runs under: no graphics, one thread, ROS within this machine."""
+
+import os
+import sys
+import tempfile
+
+import pytest
+
+# A repeatable count of threads, and ROS that neither leaves the machine nor writes to the home.
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+os.environ.setdefault('NUMBA_NUM_THREADS', '1')
+os.environ.setdefault('MPLBACKEND', 'Agg')
+os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+os.environ.setdefault('ROS_LOG_DIR', tempfile.mkdtemp(prefix='dewing-ros-log-'))
+os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
+if not os.environ.get('AMENT_PREFIX_PATH'):
+    os.environ['AMENT_PREFIX_PATH'] = sys.prefix        # the ROS wheels do not set it
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Return a function that writes text to a file of the given name and returns its path."""
+    def write(text: str, name: str = 'case.yaml') -> str:
+        path = tmp_path / name
+        path.write_text(text, encoding='utf-8')
+        return str(path)
+    return write
