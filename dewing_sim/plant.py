@@ -3,7 +3,7 @@
 """What identification, control and the nodes know of a plant, whatever solves its equations."""
 
 from dataclasses import dataclass, field
-from typing import Any, Callable, Iterator, Protocol
+from typing import Any, Callable, Iterator, NamedTuple, Protocol
 
 import numpy as np
 
@@ -39,6 +39,22 @@ class Outputs:
 
 SCALARS = ('time', 'v_squared', 'cl', 'cd', 'cm', 'camber_mean', 'camber_max',
            'camber_max_position', 'tension', 'coupling_iterations')
+
+
+class Measurement(NamedTuple):
+    """What a controller sees of a plant at one instant (SI); ``v_squared`` led here."""
+
+    time: float
+    camber_mean: float
+    camber_max: float
+    cl: float
+    cd: float
+    v_squared: float
+
+    @classmethod
+    def of(cls, outputs: Outputs) -> 'Measurement':
+        """Return the measured part of ``outputs``."""
+        return cls(*(getattr(outputs, name) for name in cls._fields))
 
 
 class Plant(Protocol):

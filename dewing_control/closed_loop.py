@@ -1,0 +1,33 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""A plant and a controller in one process, without ROS, bit for bit the loop over DDS."""
+
+from typing import Any, Iterator
+
+from dewing_control.pid import Pid
+from dewing_control.settings import ControllerSettings
+from dewing_control.supervisor import Controller, Supervisor
+from dewing_sim.identity import Identity
+from dewing_sim.plant import Measurement, Outputs, Plant, rollout
+
+
+def controller(settings: ControllerSettings, identity: Identity) -> Supervisor:
+    """Return the supervised controller that ``settings`` describe for a plant."""
+    return Supervisor(Pid.of(settings, identity), settings.command.period_steps,
+                      settings.command.hold_steps)
+
+
+def closed_loop(plant: Plant, state: Any, law: Controller, steps: int,
+                ) -> Iterator[tuple[Any, Outputs]]:
+    """Yield (state, outputs) after each of ``steps`` steps of ``plant`` under ``law``.
+
+    The controller takes over, without a bump, at the V^2 that led to ``state``.
+    """
+    memory = law.start(plant.observe(state).v_squared)
+
+    def command(outputs: Outputs) -> float:
+        nonlocal memory
+        memory, v_squared = law.step(memory, Measurement.of(outputs))
+        return v_squared
+
+    return rollout(plant, state, command, steps)

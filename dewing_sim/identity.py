@@ -1,0 +1,77 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Who a plant is: what a controller or a late listener must know to read its outputs."""
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any
+
+import yaml
+
+from dewing_sim.errors import BadInput
+from dewing_sim.parameters import Case
+from dewing_sim.plant import Plant
+
+
+def version() -> str:
+    """Return the installed version of dewing, or ``unknown`` beside bare sources."""
+    try:
+        return metadata.version('dewing')
+    except metadata.PackageNotFoundError:
+        return 'unknown'
+
+
+def loss_of_tension(case: Case) -> float:
+    """Return V_L^2, the V^2 at which the flat prestretched membrane of ``case`` goes slack."""
+    from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer, Sheet
+    membrane = case.membrane
+    elastomer = Elastomer(membrane.shear_modulus, membrane.gent_limit, membrane.bulk_modulus,
+                          VACUUM_PERMITTIVITY * membrane.relative_permittivity)
+    sheet = Sheet(elastomer, membrane.initial_thickness, membrane.prestretch_lateral)
+    return sheet.loss_of_tension_v_squared(membrane.prestretch)
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Time step, references and limits of a plant, with the case it was built from."""
+
+    plant: str                      # wing or reduced
+    dt: float                       # s
+    camber_mean: float              # m, at rest: a_ref of a controller on mean camber
+    camber_max: float               # m, at rest: a_ref of a controller on maximum camber
+    v_squared_slack: float          # V^2 at the loss of tension, V_L^2
+    v_squared_max: float            # V^2 the plant accepts
+    case: dict                      # nested parameters of the case, empty when unknown
+    version: str
+
+    @classmethod
+    def of(cls, name: str, plant: Plant, rest: Any, v_squared_slack: float, v_squared_max: float,
+           case: dict) -> 'Identity':
+        """Return the identity of ``plant``; raise `BadInput` for unusable references."""
+        outputs = plant.observe(rest)
+        identity = cls(name, float(plant.dt), float(outputs.camber_mean),
+                       float(outputs.camber_max), float(v_squared_slack), float(v_squared_max),
+                       case, version())
+        return identity.checked()
+
+    def checked(self) -> 'Identity':
+        """Return self; raise `BadInput` unless every number is positive and finite."""
+        for name in ('dt', 'camber_mean', 'camber_max', 'v_squared_slack', 'v_squared_max'):
+            value = getattr(self, name)
+            if not (isinstance(value, float) and math.isfinite(value) and value > 0.0):
+                raise BadInput(f'identity: {name} = {value!r} is not a positive number')
+        return self
+
+    def to_yaml(self) -> str:
+        """Return YAML from which `from_yaml` rebuilds the identity exactly."""
+        return yaml.safe_dump(dataclasses.asdict(self), sort_keys=False)
+
+    @classmethod
+    def from_yaml(cls, text: str) -> 'Identity':
+        """Rebuild an identity; raise `BadInput` if ``text`` is not one."""
+        try:
+            return cls(**yaml.safe_load(text)).checked()
+        except (TypeError, yaml.YAMLError) as error:
+            raise BadInput(f'not the identity of a plant: {error}') from None
