@@ -1,0 +1,165 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Eigensystem realisation of Markov parameters, paper eq. 7-9, and OKID for arbitrary inputs.
+
+Conventions: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k]; Markov parameters h[0] = D,
+h[k] = C A^(k-1) B, stored with shape (outputs, inputs, samples); rows of signals are channels.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg
+
+from dewing_sim.errors import BadInput
+
+
+@dataclass(frozen=True)
+class Realisation:
+    """Matrices of a state-space model; no units, the caller knows them."""
+
+    a: np.ndarray                       # (order, order)
+    b: np.ndarray                       # (order, inputs)
+    c: np.ndarray                       # (outputs, order)
+    d: np.ndarray                       # (outputs, inputs)
+
+    @property
+    def order(self) -> int:
+        """Return the number of states."""
+        return self.a.shape[0]
+
+
+@dataclass(frozen=True)
+class HankelFactors:
+    """The singular value decomposition H0 = U S V^T of paper eq. 8 and the shifted H1.
+
+    Realisations of every order follow from one decomposition.
+    """
+
+    left: np.ndarray                    # U, (outputs rows, rank)
+    singular_values: np.ndarray         # diagonal of S, descending
+    right: np.ndarray                   # V^T, (rank, inputs columns)
+    shifted: np.ndarray                 # H1
+    direct: np.ndarray                  # D, (outputs, inputs)
+    scale: np.ndarray                   # by which each output was divided, (outputs,)
+
+    @property
+    def rank(self) -> int:
+        """Return the numerical rank of H0."""
+        floor = max(self.shifted.shape) * np.finfo(float).eps * self.singular_values[0]
+        return int(np.sum(self.singular_values > floor))
+
+    def realise(self, order: int) -> Realisation:
+        """Return the balanced realisation of ``order`` states (paper eq. 9).
+
+        A = S^-1/2 U^T H1 V S^-1/2, B and C the first columns and rows of S^1/2 V^T and U S^1/2.
+        Raises `BadInput` if ``order`` is not between 1 and the rank of H0.
+        """
+        if not 1 <= order <= self.rank:
+            raise BadInput(f'order = {order} cannot be realised: the Hankel matrix has rank '
+                           f'{self.rank}, take 1 to {self.rank}')
+        outputs, inputs = self.direct.shape
+        root = np.sqrt(self.singular_values[:order])
+        left, right = self.left[:, :order], self.right[:order]
+        a = (left.T @ self.shifted @ right.T) / np.outer(root, root)
+        b = root[:, None] * right[:, :inputs]
+        c = left[:outputs] * root * self.scale[:, None]
+        return Realisation(a, b, c, self.direct)
+
+
+def factorise(markov: np.ndarray, rows: int | None = None) -> HankelFactors:
+    """Decompose the Hankel matrix of ``markov`` (outputs, inputs, samples), h[0] = D first.
+
+    ``rows`` block rows of H0 leave samples - 1 - rows block columns; by default half the record
+    each, which uses all of it.  Outputs are divided by their root mean square first, so that
+    metres and lift coefficients weigh alike in the truncation.
+    Raises `BadInput` for a record that is too short, not finite or without response.
+    """
+    h = np.asarray(markov, dtype=float)
+    if h.ndim != 3:
+        raise BadInput(f'Markov parameters of shape {h.shape}: expected (outputs, inputs, '
+                       'samples)')
+    samples = h.shape[2]
+    rows = (samples - 1) // 2 if rows is None else rows
+    columns = samples - 1 - rows
+    if rows < 1 or columns < 1:
+        raise BadInput(f'{samples} samples do not fill a Hankel matrix of {rows} block rows: '
+                       f'at least {max(rows, 1) + 2} are needed')
+    if not np.isfinite(h).all():
+        raise BadInput('Markov parameters contain values that are not finite')
+    scale = np.sqrt(np.mean(h[:, :, 1:]**2, axis=(1, 2)))
+    if not scale.all():
+        raise BadInput(f'output {int(np.argmin(scale))} is constant: nothing to identify')
+    scaled = h / scale[:, None, None]
+    left, singular_values, right = linalg.svd(
+        _hankel(scaled[:, :, 1:-1], rows, columns), full_matrices=False)
+    return HankelFactors(left, singular_values, right,
+                         _hankel(scaled[:, :, 2:], rows, columns), h[:, :, 0], scale)
+
+
+def _hankel(h: np.ndarray, rows: int, columns: int) -> np.ndarray:
+    """Return the block Hankel matrix with block (i, j) = h[i + j]."""
+    outputs, inputs, _ = h.shape
+    blocks = h[:, :, np.add.outer(np.arange(rows), np.arange(columns))]
+    return blocks.transpose(2, 0, 3, 1).reshape(rows * outputs, columns * inputs)
+
+
+def era(markov: np.ndarray, order: int, rows: int | None = None) -> Realisation:
+    """Return the ERA model of ``order`` states; see `factorise` and `HankelFactors.realise`."""
+    return factorise(markov, rows).realise(order)
+
+
+def okid(u: np.ndarray, y: np.ndarray, samples: int, lags: int) -> np.ndarray:
+    """Estimate Markov parameters from arbitrary inputs through an observer.
+
+    Least squares on y[k] = sum_i (alpha_i u[k-i] + beta_i y[k-i]), i = 1..lags, then
+    h[k] = alpha_k + sum_i beta_i h[k-i] (Juang, Phan, Horta, Longman 1993,
+    doi:10.2514/3.21006), with D = 0 and the system at rest before the first sample.
+
+    u: (inputs, N), y: (outputs, N); returns (outputs, inputs, samples).
+    Raises `BadInput` if the record is too short for the unknowns or holds no response.
+    """
+    inputs, outputs, length = u.shape[0], y.shape[0], y.shape[1]
+    unknowns = lags * (inputs + outputs)
+    if length < unknowns + 1:
+        raise BadInput(f'{length} samples are too few for {lags} observer lags '
+                       f'({unknowns} unknowns an output)')
+    scales = np.concatenate([np.abs(u).max(axis=1), np.abs(y).max(axis=1)])
+    if not scales.all():
+        raise BadInput('an input or output is constant: nothing to identify')
+    signals = np.vstack([u, y]) / scales[:, None]
+    past = np.zeros((lags, inputs + outputs, length))
+    for lag in range(1, lags + 1):
+        past[lag - 1, :, lag:] = signals[:, :-lag]
+    weights = linalg.lstsq(past.reshape(unknowns, length).T, signals[inputs:].T,
+                           lapack_driver='gelsy')[0].T
+    blocks = weights.reshape(outputs, lags, inputs + outputs)
+    markov = _unroll(blocks[:, :, :inputs], blocks[:, :, inputs:], samples)
+    return markov * scales[inputs:, None, None] / scales[None, :inputs, None]
+
+
+def _unroll(alpha: np.ndarray, beta: np.ndarray, samples: int) -> np.ndarray:
+    """Return Markov parameters of the recursion with alpha, beta of (outputs, lags, .)."""
+    outputs, lags, inputs = alpha.shape
+    h = np.zeros((samples, outputs, inputs))
+    for k in range(1, samples):
+        if k <= lags:
+            h[k] = alpha[:, k - 1]
+        for i in range(1, min(k, lags) + 1):
+            h[k] += beta[:, i - 1] @ h[k - i]
+    return h.transpose(1, 2, 0)
+
+
+def reflect_unstable(realisation: Realisation) -> tuple[Realisation, np.ndarray]:
+    """Mirror eigenvalues outside the unit circle to 1 / conj(z); return also the originals.
+
+    The second value, empty for a stable model, is what must be reported.
+    """
+    eigenvalues, vectors = np.linalg.eig(realisation.a)
+    outside = np.abs(eigenvalues) > 1.0
+    if not outside.any():
+        return realisation, eigenvalues[outside]
+    moved = np.where(outside, 1.0 / eigenvalues.conj(), eigenvalues)
+    a = (vectors * moved) @ np.linalg.inv(vectors)
+    return (Realisation(a.real, realisation.b, realisation.c, realisation.d),
+            eigenvalues[outside])

@@ -1,0 +1,116 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""From records to a judged model: the same steps offline, in the node and from a file."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import yaml
+
+from dewing_sim.errors import BadInput
+from dewing_sim.identity import Identity
+from dewing_sysid import era
+from dewing_sysid.experiment import Record, unit
+from dewing_sysid.model import Model, nrmse_fit
+from dewing_sysid.plan import EXPERIMENT, HALF, samples, time_scale
+from dewing_sysid.settings import Settings
+
+WINDOWS = (0.3, 0.6, 1.2, 2.4, 4.8)     # c/U, about the paper's 1.2
+WORST_FIT = -1.0e6                      # percent, where an unstable model overflows
+Fits = dict[str, dict[str, float]]      # run: output: percent NRMSE
+
+
+@dataclass(frozen=True)
+class Identification:
+    """A model and what is known of its quality."""
+
+    model: Model                        # its ``fit`` maps 'window' and every run
+    records: dict[str, Record]
+    window: int                         # samples of pulse response in the Hankel matrix
+    linearity: dict[str, float]         # |y(a) - 2 y(a/2)| / |y(a)| by output
+    reflected: np.ndarray               # unstable poles that were mirrored into the circle
+    by_order: dict[int, Fits]
+    by_window: dict[float, Fits]        # by c/U
+
+
+def identify(records: dict[str, Record], settings: Settings, identity: Identity,
+             ) -> Identification:
+    """Realise a model from the record `EXPERIMENT` and judge it on all of them.
+
+    Raises `BadInput` if an output does not respond, if the record is too short for the window or
+    the order, or if its time step is not that of the plant.
+    """
+    measured, chosen, scale = records[EXPERIMENT], settings.realisation, time_scale(identity)
+    if not np.isclose(measured.dt, identity.dt, rtol=1e-9):
+        raise BadInput(f'the record has dt = {measured.dt:g} s, the plant {identity.dt:g} s')
+    window = samples(chosen.window, scale, measured.dt)
+    factors = factorise(measured, settings, window)
+    realisation, reflected = factors.realise(chosen.order), np.empty(0)
+    if chosen.unstable_poles == 'reflect':
+        realisation, reflected = era.reflect_unstable(realisation)
+    model = _model(realisation, factors, measured, identity)
+    runs = {'window': measured.head(window), **records}
+    return Identification(
+        replace(model, fit=judge(model, runs)), records, window, linearity(records), reflected,
+        {order: judge(_model(factors.realise(order), factors, measured, identity), runs)
+         for order in range(2, min(2 * chosen.order, factors.rank) + 1, 2)},
+        _effect_of_window(runs, settings, identity))
+
+
+def _effect_of_window(runs: dict[str, Record], settings: Settings, identity: Identity,
+                      ) -> dict[float, Fits]:
+    measured, effect = runs[EXPERIMENT], {}
+    for window in WINDOWS:
+        length = samples(window, time_scale(identity), measured.dt)
+        if length <= len(measured.u):
+            factors = factorise(measured, settings, length)
+            realisation = factors.realise(min(settings.realisation.order, factors.rank))
+            effect[window] = judge(_model(realisation, factors, measured, identity), runs)
+    return effect
+
+
+def markov(record: Record, lags: int, length: int) -> np.ndarray:
+    """Return Markov parameters (outputs, 1, length) per V^2 of input: divided pulse, or OKID.
+
+    Raises `BadInput` if the record is too short or an output does not respond.
+    """
+    u, y = record.u, record.y
+    silent = ~np.any(y, axis=1)
+    if silent.any():
+        raise BadInput(f'output {record.names[int(np.argmax(silent))]} is constant: it does not '
+                       'respond to V^2, leave it out or raise the amplitude')
+    if u[0] != 0.0 and not u[1:].any():
+        return record.head(length).y[:, None, :] / u[0]
+    return era.okid(u[None], y, length, lags)
+
+
+def factorise(record: Record, settings: Settings, length: int) -> era.HankelFactors:
+    """Return the decomposed Hankel matrix of the first ``length`` Markov parameters."""
+    return era.factorise(markov(record, settings.realisation.lags, length))
+
+
+def _model(realisation: era.Realisation, factors: era.HankelFactors, record: Record,
+           identity: Identity) -> Model:
+    return Model(
+        realisation.a, realisation.b, realisation.c, np.zeros_like(realisation.d), record.dt,
+        record.operating_v_squared, record.baseline.mean(axis=1), record.names,
+        tuple(map(unit, record.names)), identity.v_squared_slack, identity.v_squared_max,
+        factors.singular_values, yaml.safe_dump({'/**': {'ros__parameters': identity.case}}))
+
+
+def judge(model: Model, records: dict[str, Record]) -> Fits:
+    """Return the percent NRMSE of every record and output, not less than `WORST_FIT`."""
+    with np.errstate(over='ignore', invalid='ignore'):
+        return {run: {name: float(max(fit, WORST_FIT)) if np.isfinite(fit) else WORST_FIT
+                      for name, fit in zip(record.names,
+                                           nrmse_fit(record.y, model.simulate(record.u)))}
+                for run, record in records.items()}
+
+
+def linearity(records: dict[str, Record]) -> dict[str, float]:
+    """Return |y(a) - 2 y(a/2)| / |y(a)| by output, empty without a run at half amplitude."""
+    if HALF not in records:
+        return {}
+    full, half = records[EXPERIMENT], records[HALF]
+    departure = np.linalg.norm(full.y - 2.0 * half.y, axis=1) / np.linalg.norm(full.y, axis=1)
+    return dict(zip(full.names, map(float, departure)))

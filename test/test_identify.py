@@ -1,0 +1,244 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Identification of a wing-like plant with known poles, and refusals of what cannot be used."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from synthetic_plant import DAMPING, FREQUENCIES, SyntheticPlant
+
+from dewing_sim import parameters, reduced
+from dewing_sim.errors import BadInput
+from dewing_sim.identity import Identity
+from dewing_sysid import experiment, plan
+from dewing_sysid.identify import identify, judge
+from dewing_sysid.model import Model, nrmse_fit
+from dewing_sysid.settings import Settings
+
+CASE = parameters.load('paper')
+
+
+def identity_of(plant, case=CASE):
+    return Identity.of('synthetic', plant, plant.rest(), plant.v_squared_slack,
+                       case.actuation.voltage_limit**2,
+                       parameters.to_mapping(case))
+
+
+PAPER = identity_of(SyntheticPlant())
+
+
+def settings(**changes):
+    names = {'experiment__': 'experiment.', 'fresh__': 'fresh.', 'realisation__': 'realisation.'}
+    changed = {'realisation.order': 8}
+    for key, value in changes.items():
+        for prefix, dotted in names.items():
+            key = key.replace(prefix, dotted)
+        changed[key] = value
+    return parameters.load('sysid', Settings, changed)
+
+
+def records_of(plant, chosen, processes=1):
+    planned = plan.make(chosen, PAPER)
+    runs = experiment.run_all(plant, plant.rest(), planned.names, list(planned.inputs.values()),
+                              processes)
+    return planned.records(dict(zip(planned.inputs, runs)))
+
+
+@pytest.fixture(scope='module')
+def pulsed():
+    chosen = settings()
+    return identify(records_of(SyntheticPlant(), chosen), chosen, PAPER)
+
+
+def test_pulse_gives_the_poles_of_the_plant(pulsed):
+    frequency, damping = pulsed.model.modes()
+    assert frequency[-3:] == pytest.approx(FREQUENCIES, rel=1e-6)
+    assert damping[-3:] == pytest.approx(DAMPING, rel=1e-5)
+    assert damping[:2] == pytest.approx([1.0, 1.0])
+
+
+def test_every_record_is_reproduced(pulsed):
+    assert set(pulsed.model.fit) == {'window', 'experiment', 'half', 'prbs', 'chirp'}
+    for fits in pulsed.model.fit.values():
+        assert min(fits.values()) > 99.99
+
+
+def test_first_sample_is_untouched_and_the_second_is_the_first_markov_parameter(pulsed):
+    record, model = pulsed.records['experiment'], pulsed.model
+    assert not record.y[:, 0].any()
+    assert record.y[:, 1] == pytest.approx((model.c @ model.b)[:, 0] * record.u[0], rel=1e-9)
+    assert not model.d.any()
+
+
+def test_fit_grows_with_order(pulsed):
+    fits = [pulsed.by_order[order]['window']['camber_mean'] for order in (2, 4, 6, 8)]
+    assert np.all(np.diff(fits) > 0.0)
+
+
+def test_a_linear_plant_passes_the_linearity_check(pulsed):
+    assert max(pulsed.linearity.values()) < 1e-9
+
+
+def test_a_hardening_plant_fails_the_linearity_check():
+    chosen = settings()
+    found = identify(records_of(SyntheticPlant(hardening=1e-6), chosen), chosen, PAPER)
+    # a (1 + g a) against 2 (a/2)(1 + g a/2) at g a = 0.16: g a / 2 / (1 + g a)
+    assert found.linearity['cl'] == pytest.approx(0.08 / 1.16, rel=1e-6)
+
+
+@pytest.mark.parametrize('kind', ['prbs', 'chirp', 'step'])
+def test_other_experiments_give_the_same_poles(kind):
+    chosen = settings(experiment__kind=kind, experiment__hold=4)
+    found = identify(records_of(SyntheticPlant(), chosen), chosen, PAPER)
+    assert found.model.modes()[0][-3:] == pytest.approx(FREQUENCIES, rel=1e-3)
+    assert min(found.model.fit['prbs'].values()) > 99.5
+
+
+def test_a_doublet_about_a_raised_operating_point_gives_the_same_poles():
+    raised = parameters.replace(CASE, {'actuation.voltage': 500.0})
+    chosen = settings(experiment__kind='doublet', experiment__hold=2)
+    plant = SyntheticPlant()
+    planned = plan.make(chosen, identity_of(plant, raised))
+    start = plant.rest()
+    for _ in range(200):
+        start = plant.step(start, 500.0**2)
+    runs = experiment.run_all(plant, start, planned.names, list(planned.inputs.values()), 1)
+    found = identify(planned.records(dict(zip(planned.inputs, runs))), chosen, PAPER)
+    assert found.model.operating_v_squared == 500.0**2
+    assert found.model.modes()[0][-3:] == pytest.approx(FREQUENCIES, rel=1e-3)
+
+
+def test_two_processes_give_the_records_of_one():
+    chosen = settings()
+    one, two = (records_of(SyntheticPlant(), chosen, n) for n in (1, 2))
+    assert list(one) == list(two)
+    for run in one:
+        assert np.array_equal(one[run].outputs, two[run].outputs)
+
+
+def test_records_survive_their_file(pulsed, tmp_path):
+    experiment.save_records(tmp_path / 'r.npz', pulsed.records, PAPER)
+    loaded, identity = experiment.load_records(tmp_path / 'r.npz')
+    assert identity == PAPER
+    assert list(loaded) == list(pulsed.records)
+    again = identify(loaded, settings(), PAPER)
+    assert np.array_equal(again.model.a, pulsed.model.a)
+
+
+def test_a_single_record_is_enough(pulsed):
+    alone = identify({'experiment': pulsed.records['experiment']}, settings(), PAPER)
+    assert np.array_equal(alone.model.a, pulsed.model.a)
+    assert alone.linearity == {}
+
+
+def test_model_survives_its_file(pulsed, tmp_path):
+    pulsed.model.save(tmp_path / 'm.npz')
+    loaded = Model.load(tmp_path / 'm.npz')
+    for name in 'abcd':
+        assert np.array_equal(getattr(loaded, name), getattr(pulsed.model, name))
+    assert loaded.fit == pulsed.model.fit
+    assert (loaded.output_names, loaded.units) == (experiment.STANDARD, ('m', 'm', '-'))
+    assert loaded.dt == 1.0e-4
+    (tmp_path / 'case.yaml').write_text(loaded.case_yaml)
+    assert parameters.load(str(tmp_path / 'case.yaml')) == CASE
+    assert loaded.operating_outputs == pytest.approx([1.8e-5, 2.7e-5, 0.395])
+
+
+def test_model_file_runs_as_a_plant(pulsed, tmp_path):
+    pulsed.model.save(tmp_path / 'm.npz')
+    plant = reduced.load(tmp_path / 'm.npz')
+    record = pulsed.records['prbs']
+    outputs = experiment.run(plant, plant.rest(), record.names, record.v_squared)
+    assert np.min(nrmse_fit(record.outputs, outputs)) > 99.99
+
+
+def test_model_file_that_is_none_is_refused(tmp_path):
+    (tmp_path / 'x.npz').write_text('no archive')
+    with pytest.raises(BadInput, match='not a model'):
+        Model.load(tmp_path / 'x.npz')
+    with pytest.raises(BadInput, match='no such'):
+        Model.load(tmp_path / 'y.npz')
+
+
+def test_frequency_response_is_that_of_the_simulated_sine(pulsed):
+    frequency = 50.0
+    u = np.sin(2.0 * np.pi * frequency * 1.0e-4 * np.arange(60000))
+    tail = slice(-2000, None)           # ten periods
+    phase = np.exp(-2j * np.pi * frequency * 1.0e-4 * np.arange(60000))[tail]
+    measured = 2j * np.mean(pulsed.model.simulate(u)[:, tail] * phase, axis=1)
+    assert np.allclose(pulsed.model.frequency_response([frequency])[:, 0], measured, rtol=1e-6)
+
+
+def test_unstable_model_is_judged_with_a_finite_number(pulsed):
+    growing = replace(pulsed.model, a=3.0 * pulsed.model.a)
+    assert judge(growing, pulsed.records)['prbs']['cl'] == -1.0e6
+
+
+def test_fit_of_the_record_itself_is_a_hundred_and_of_its_mean_zero():
+    y = np.array([[1.0, 2.0, 4.0]])
+    assert nrmse_fit(y, y)[0] == 100.0
+    assert nrmse_fit(y, np.full_like(y, y.mean()))[0] == pytest.approx(0.0)
+
+
+def test_a_pulse_above_the_voltage_limit_is_refused_with_both_voltages():
+    with pytest.raises(BadInput, match='1400 V.*1250 V.*1300 V'):
+        plan.make(settings(experiment__amplitude=1400.0), PAPER)
+
+
+def test_a_pulse_that_slackens_the_membrane_is_refused():
+    with pytest.raises(BadInput, match='V = 400 V slackens the membrane in step 1'):
+        records_of(SyntheticPlant(v_squared_slack=350.0**2), settings())
+
+
+def test_a_window_longer_than_the_record_is_refused():
+    with pytest.raises(BadInput, match='record = 0.5 c/U is too short'):
+        plan.make(settings(experiment__record=0.5), PAPER)
+
+
+def test_an_order_the_window_cannot_carry_is_refused():
+    chosen = settings(realisation__window=0.05)
+    with pytest.raises(BadInput, match='order = 8 cannot be realised'):
+        identify(records_of(SyntheticPlant(), chosen), chosen, PAPER)
+
+
+def test_an_output_without_response_is_refused(pulsed):
+    record = pulsed.records['experiment']
+    still = record.outputs.copy()
+    still[1] = record.baseline[1]
+    with pytest.raises(BadInput, match='camber_max is constant'):
+        identify({'experiment': replace(record, outputs=still)}, settings(), PAPER)
+
+
+@pytest.mark.parametrize('field, name', [('outputs', 'cl'), ('baseline', 'cl')])
+def test_nan_is_refused_where_it_stands(pulsed, field, name):
+    record = pulsed.records['experiment']
+    broken = getattr(record, field).copy()
+    broken[2, 17] = np.nan
+    with pytest.raises(BadInput, match=f'{name} is not finite at sample 17'):
+        replace(record, **{field: broken})
+
+
+@pytest.mark.parametrize('dt', [0.0, -1.0e-4, np.nan])
+def test_a_wrong_time_step_is_refused(pulsed, dt):
+    with pytest.raises(BadInput, match='dt'):
+        replace(pulsed.records['experiment'], dt=dt)
+
+
+def test_a_record_of_another_time_step_is_refused(pulsed):
+    record = replace(pulsed.records['experiment'], dt=2.0e-4)
+    with pytest.raises(BadInput, match='dt = 0.0002 s, the plant 0.0001 s'):
+        identify({'experiment': record}, settings(), PAPER)
+
+
+def test_shapes_that_do_not_fit_are_refused(pulsed):
+    record = pulsed.records['experiment']
+    with pytest.raises(BadInput, match='do not fit'):
+        replace(record, v_squared=record.v_squared[:-1])
+
+
+def test_an_unknown_output_is_refused():
+    with pytest.raises(BadInput, match="'lift' is unknown"):
+        plan.make(settings(), PAPER, ['lift'])
+    with pytest.raises(BadInput, match='mode_1 needs a membrane'):
+        experiment.run(SyntheticPlant(), SyntheticPlant().rest(), ['mode_1'], np.zeros(2))
