@@ -68,6 +68,10 @@ class Motion:
         """Return the position one step ahead, extrapolated with an error of order dt^3."""
         return self.position + dt * (1.5 * self.velocity - 0.5 * self.velocity_before)
 
+    def rate(self, position: np.ndarray, dt: float) -> np.ndarray:
+        """Return the BDF2 velocity if ``position`` is reached one step ahead."""
+        return _velocity(position, self.position, self.position_before, dt)
+
 
 @dataclass(frozen=True, eq=False)
 class Operator:
@@ -155,7 +159,7 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
     solve = _chord_solve(operator)
     previous = np.inf
     for iteration in range(ITERATIONS):
-        velocity = _velocity(position, motion.position, motion.position_before, dt)
+        velocity = motion.rate(position, dt)
         residual = _imbalance(structure.mass, velocity, motion.velocity, motion.velocity_before,
                               dt, damping, structure.internal_force(position, v_squared),
                               load(position, velocity)).reshape(-1)[structure.free]
@@ -172,7 +176,7 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
         unknown -= correction
         if size <= tolerance * structure.chord:
             structure.require_taut(position, v_squared)
-            velocity = _velocity(position, motion.position, motion.position_before, dt)
+            velocity = motion.rate(position, dt)
             return Motion(position, velocity, motion.position, motion.velocity)
         previous = size
     structure.require_taut(position, v_squared)
