@@ -1,0 +1,107 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The rest state: a quasi-steady start, then a dynamic restart, as in the paper; kept on disk.
+
+The flow starts with the expected circulation.  Until `QUASI_STEADY` convective times the membrane
+is overdamped, so that it follows the developing load without ringing, and the far field learns the
+circulation; from there to ``trim_time`` the motion is the true one.
+"""
+
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from dewing_sim import checkpoint
+from dewing_sim.errors import BadInput
+from dewing_sim.fluid.base import Wall
+from dewing_sim.parameters import to_mapping
+from dewing_sim.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
+from dewing_sim.structure.dynamics import Motion
+from dewing_sim.wing import State, Wing
+
+QUASI_STEADY = 10.0                 # c/U
+PROGRESS_STEPS = 50                 # between calls of `progress`
+
+
+def rest(wing: Wing, progress=None) -> State:
+    """Return the rest state of ``wing`` from the cache, or march to it and keep it."""
+    path = cache_folder() / f'rest-{fingerprint(wing)}.npz'
+    if path.is_file():
+        try:
+            return checkpoint.load(path)
+        except BadInput:
+            path.unlink(missing_ok=True)        # a broken cache is computed again
+    state = march(wing, progress)
+    _keep(path, state, wing)
+    return state
+
+
+def march(wing: Wing, progress=None) -> State:
+    """Compute the rest state; ``progress(done, total)`` counts steps."""
+    dt = wing.dt / wing.scales.time
+    v_squared = wing.case.actuation.voltage**2
+    total = round(wing.case.numerics.trim_time / dt)
+    damping = 2.0 * first_frequency(wing)
+    overdamped, free = wing.operator(damping), wing.operator(0.0)
+    state = start(wing)
+    for step in range(total):
+        quasi_steady = step * dt < QUASI_STEADY
+        coupled = wing.couple(state, v_squared, 0.0, overdamped if quasi_steady else free,
+                              damping if quasi_steady else 0.0)
+        flow = coupled.flow
+        if step * dt < ADAPTATION_TIME:
+            flow = adapt_circulation(wing.fluid, flow, dt)
+        state = State(0, v_squared, flow, coupled.motion, coupled.iterations, coupled.residual)
+        if progress and (step + 1) % PROGRESS_STEPS == 0:
+            progress(step + 1, total)
+    return state
+
+
+def start(wing: Wing) -> State:
+    """Return potential flow past the flat membrane."""
+    flow_section = wing.case.flow
+    wall = Wall.flat(wing.fluid.columns)
+    circulation = starting_circulation(flow_section.angle_of_attack, 0.0)
+    return State(0, wing.case.actuation.voltage**2, wing.fluid.rest(wall, circulation),
+                 Motion.at_rest(wing.membrane.rest_position))
+
+
+def first_frequency(wing: Wing) -> float:
+    """Return the first angular frequency in vacuo, pi sqrt(T/m) / c, in U/c."""
+    membrane = wing.membrane
+    tension = membrane.tension(membrane.rest_position, wing.case.actuation.voltage**2)[0]
+    return np.pi * float(np.sqrt(tension / membrane.mass.sum()))
+
+
+def fingerprint(wing: Wing) -> str:
+    """Return a hash of all that the rest state depends on: the case and the solver's sources."""
+    case = to_mapping(wing.case)
+    del case['disturbance'], case['actuation']['voltage_limit']
+    digest = hashlib.sha256(yaml.safe_dump(case).encode())
+    package = Path(__file__).parent
+    for source in sorted([*package.glob('fluid/**/*.py'), *package.glob('structure/*.py'),
+                          *(package / name for name in ('interface.py', 'plate.py', 'scales.py',
+                                                        'trim.py', 'wing.py'))]):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:24]
+
+
+def cache_folder() -> Path:
+    """Return the folder of cached states: $XDG_CACHE_HOME/dewing, else ~/.cache/dewing."""
+    return Path(os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache') / 'dewing'
+
+
+def _keep(path: Path, state: State, wing: Wing) -> None:
+    """Write atomically, so that two processes may trim at once; a full disk is no failure."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+            draft = Path(folder) / path.name
+            checkpoint.save(draft, state, wing.case)
+            draft.replace(path)
+    except OSError:
+        return

@@ -1,0 +1,135 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The coupled wing: a Navier-Stokes flow about a dielectric-elastomer membrane.
+
+This file is the algorithm of the paper (section 2) on one screen: a V^2 held over the step changes
+the tension of the membrane, and flow and membrane are solved together until the shape no longer
+changes.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dewing_sim import interface
+from dewing_sim.disturbance import wall_pressure
+from dewing_sim.errors import BadInput, RunFailed
+from dewing_sim.fluid import engines
+from dewing_sim.parameters import Case
+from dewing_sim.plant import Outputs
+from dewing_sim.scales import Scales
+from dewing_sim.structure.dynamics import Motion, Operator
+from dewing_sim.structure.membrane import Membrane
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Everything the next step depends on; lengths in chords, speeds in U."""
+
+    step: int
+    v_squared: float                # V^2 held during the last step
+    flow: Any
+    motion: Motion
+    iterations: int = 0             # coupling passes of the last step
+    residual: float = 0.0           # its last relative change of shape
+
+
+class Wing:
+    """An immutable membrane wing in a flow, a `plant.Plant`."""
+
+    def __init__(self, case: Case):
+        """Prepare the solvers of ``case``."""
+        self.case = case
+        self.dt = case.numerics.time_step
+        self.scales = Scales.of(case.flow, case.membrane.chord)
+        self.membrane = Membrane.from_parameters(case.membrane, self.scales)
+        self.fluid = engines.make(case.numerics.engine, case.numerics.grid, self.scales.reynolds,
+                                  case.flow.angle_of_attack, self.dt / self.scales.time)
+        self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
+            case.membrane.prestretch)
+        self._resistance = interface.nodal_resistance(self.fluid, self.membrane)
+        self._operator = self.operator(damping=0.0)
+        _require_tension(case, math.sqrt(self.v_squared_slack))
+
+    def rest(self, progress=None) -> State:
+        """Return the trimmed state at time 0 under the voltage of the case, cached on disk.
+
+        ``progress(done, total)`` is called along the way if the state has to be computed.
+        """
+        from dewing_sim import trim     # trim marches a Wing
+        return trim.rest(self, progress)
+
+    def step(self, state: State, v_squared: float) -> State:
+        """Return the state one ``dt`` later with ``v_squared`` (V^2) held.
+
+        Raises `BadInput` for a V^2 that is negative or not finite, `NotConverged`, `Diverged` or
+        `Slack` with the last good state.
+        """
+        if not 0.0 <= v_squared < math.inf:
+            raise BadInput(f'v_squared = {v_squared!r} V^2 is out of range: zero or more')
+        time = (state.step + 1) * self.dt
+        pressure = 0.5 * wall_pressure(self.case.disturbance, time)     # q is rho U^2 / 2
+        coupled = self.couple(state, v_squared, pressure, self._operator)
+        return State(state.step + 1, v_squared, coupled.flow, coupled.motion,
+                     coupled.iterations, coupled.residual)
+
+    def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
+               damping: float = 0.0) -> interface.Coupled:
+        """Advance flow and membrane by one step; failures carry ``state`` and its time."""
+        numerics = self.case.numerics
+        try:
+            return interface.solve(
+                self.fluid, self.membrane, operator, state.flow, state.motion,
+                self.dt / self.scales.time, v_squared, pressure,
+                numerics.coupling_tolerance, numerics.coupling_iterations, damping)
+        except RunFailed as error:
+            message = f'step {state.step + 1} (t = {(state.step + 1) * self.dt:.6g} s): {error}'
+            raise type(error)(message, state) from None
+
+    def operator(self, damping: float) -> Operator:
+        """Return the membrane's iteration operator with the flow's added mass (damping in U/c)."""
+        return Operator.of(self.membrane, self.dt / self.scales.time, self._resistance, damping)
+
+    def observe(self, state: State) -> Outputs:
+        """Return the outputs of ``state`` in SI units."""
+        chord = self.scales.length
+        loads = self.fluid.loads(state.flow)
+        x, y = state.motion.position.T
+        peak, peak_x = _peak(x, y)
+        tension = self.membrane.tension(state.motion.position, state.v_squared)
+        centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
+        return Outputs(
+            time=state.step * self.dt, v_squared=state.v_squared,
+            cl=loads.cl, cd=loads.cd, cm=loads.cm,
+            camber_mean=chord * float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x))),
+            camber_max=chord * peak, camber_max_position=peak_x,
+            tension=self.scales.tension * float(tension.mean()),
+            coupling_iterations=state.iterations,
+            x=chord * x, y=chord * y,
+            pressure_jump=self.scales.pressure * np.interp(x, centres, loads.jump))
+
+    @property
+    def reference_deflection(self) -> float:
+        """y_ref = q c^2 / (8 T0) in m: the deflection of a string under a uniform pressure q."""
+        tension = self.membrane.tension(self.membrane.rest_position, 0.0)[0] * self.scales.tension
+        return self.case.flow.dynamic_pressure * self.scales.length**2 / (8.0 * tension)
+
+
+def _peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """Return the largest deflection and its place, by a parabola through three nodes."""
+    k = min(max(int(np.argmax(y)), 1), len(y) - 2)
+    curvature, slope, height = np.polyfit(x[k - 1:k + 2] - x[k], y[k - 1:k + 2], 2)
+    if curvature >= 0.0:
+        return float(y[k]), float(x[k])
+    offset = -0.5 * slope / curvature
+    return float(height + 0.5 * slope * offset), float(x[k] + offset)
+
+
+def _require_tension(case: Case, slack_voltage: float) -> None:
+    for name in ('voltage', 'voltage_limit'):
+        value = getattr(case.actuation, name)
+        if value >= slack_voltage:
+            raise BadInput(f'actuation.{name} = {value:g} V is out of range: the membrane loses '
+                           f'its tension at {slack_voltage:.4g} V')
