@@ -1,6 +1,6 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""The schema of every parameter: the dataclass is the documentation, the check and the ROS descriptor.
+"""The schema of every parameter: its dataclass is documentation, check and ROS descriptor.
 
 Two doors, one room: `load` reads a ROS-format YAML file, the nodes read declared ROS parameters;
 both end in `from_mapping`, which accepts exactly the fields of a dataclass, each with the right
@@ -39,6 +39,11 @@ def choice(meaning: str, *options: str) -> Any:
         type=str, unit='', meaning=meaning, options=options))
 
 
+def text(meaning: str) -> Any:
+    """Declare a free-text field, such as a path; it may be empty."""
+    return dataclasses.field(metadata=dict(type=str, unit='', meaning=meaning))
+
+
 @dataclass(frozen=True)
 class Flow:
     """The air that meets the wing."""
@@ -55,7 +60,7 @@ class Flow:
 
     @property
     def dynamic_pressure(self) -> float:
-        """q = rho U^2 / 2 in Pa."""
+        """Dynamic pressure q = rho U^2 / 2 in Pa."""
         return 0.5 * self.density * self.speed**2
 
 
@@ -130,6 +135,8 @@ def describe(field: dataclasses.Field) -> str:
     meta = field.metadata
     if 'options' in meta:
         return f"{meta['meaning']}; one of {', '.join(meta['options'])}"
+    if 'low' not in meta:
+        return meta['meaning']
     unit = f" [{meta['unit']}]" if meta['unit'] else ''
     return f"{meta['meaning']}{unit}, from {meta['low']:g} to {meta['high']:g}"
 
@@ -143,8 +150,10 @@ def check(name: str, field: dataclasses.Field, value: Any) -> Any:
                        f'{describe(field)}')
     if 'options' in field.metadata:
         admissible = value in field.metadata['options']
-    else:
+    elif 'low' in field.metadata:
         admissible = field.metadata['low'] <= value <= field.metadata['high']
+    else:
+        admissible = True
     if not admissible:
         raise BadInput(f'{name} = {value!r} is out of range: {describe(field)}')
     return value
@@ -250,19 +259,31 @@ def load(name: str, schema: type[Section] = Case, changes: Mapping[str, Any] | N
     """
     path = config_file(name)
     try:
-        tree = yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
-        parameters = tree['/**']['ros__parameters']
-    except yaml.YAMLError as error:
-        raise BadInput(f'{path}: not valid YAML ({_one_line(error)})') from None
+        text = path.read_text(encoding='utf-8')
     except (OSError, UnicodeDecodeError) as error:
         raise BadInput(f'{path}: cannot be read ({_one_line(error)})') from None
-    except (TypeError, KeyError):
-        raise BadInput(f'{path}: parameters are expected below /**: ros__parameters:') from None
-    try:
-        section = from_mapping(schema, parameters)
-    except BadInput as error:
-        raise BadInput(f'{path}: {error}') from None
+    section = from_yaml(text, schema, str(path))
     return replace(section, changes) if changes else section
+
+
+def from_yaml(text: str, schema: type[Section] = Case, origin: str = 'YAML') -> Section:
+    """Build a schema instance from ROS-format YAML; ``origin`` opens the messages of errors."""
+    try:
+        parameters = yaml.load(text, _StrictLoader)['/**']['ros__parameters']
+    except yaml.YAMLError as error:
+        raise BadInput(f'{origin}: not valid YAML ({_one_line(error)})') from None
+    except (TypeError, KeyError):
+        raise BadInput(f'{origin}: parameters are expected below /**: ros__parameters:') from None
+    try:
+        return from_mapping(schema, parameters)
+    except BadInput as error:
+        raise BadInput(f'{origin}: {error}') from None
+
+
+def to_yaml(section: Any) -> str:
+    """Return the ROS-format YAML from which `from_yaml` rebuilds ``section``."""
+    tree = {'/**': {'ros__parameters': to_mapping(section)}}
+    return yaml.safe_dump(tree, sort_keys=False)
 
 
 class _StrictLoader(yaml.SafeLoader):

@@ -32,20 +32,20 @@ class Scales:
 
     @property
     def time(self) -> float:
-        """c / U in s."""
+        """Convective time c / U in s."""
         return self.length / self.speed
 
     @property
     def pressure(self) -> float:
-        """Rho U^2 in Pa: twice the dynamic pressure."""
+        """Pressure scale rho U^2 in Pa: twice the dynamic pressure."""
         return self.density * self.speed**2
 
     @property
     def tension(self) -> float:
-        """Rho U^2 c in N/m, also the scale of force per unit span."""
+        """Tension scale rho U^2 c in N/m, also that of force per unit span."""
         return self.pressure * self.length
 
     @property
     def surface_density(self) -> float:
-        """Rho c in kg/m^2."""
+        """Surface density scale rho c in kg/m^2."""
         return self.density * self.length

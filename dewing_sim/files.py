@@ -1,0 +1,47 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Result files: never half written, and never written over another without permission."""
+
+import os
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO, Iterator
+
+from dewing_sim.errors import BadInput
+
+
+def check_free(path: str | Path, overwrite: bool = False) -> Path:
+    """Return ``path`` if a file may be written there; raise `BadInput` otherwise.
+
+    Commands call it before a long computation, so that the result is not lost at its end.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise BadInput(f'{path} is a folder, not a file')
+    if path.exists() and not overwrite:
+        raise BadInput(f'{path} exists; --force writes over it')
+    folder = path.parent
+    while not folder.exists():
+        folder = folder.parent
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise BadInput(f'{path}: {folder} is not a folder that can be written to')
+    return path
+
+
+@contextmanager
+def new_file(path: str | Path, overwrite: bool = False) -> Iterator[BinaryIO]:
+    """Open a binary file that appears at ``path``, with its folders, once it is complete."""
+    path = check_free(path, overwrite)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f'.{path.name}.')
+    try:
+        with os.fdopen(descriptor, 'wb') as file:
+            yield file
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(temporary, 0o666 & ~umask)
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise

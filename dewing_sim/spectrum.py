@@ -1,0 +1,48 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Lines and amplitudes of a signal in time."""
+
+import numpy as np
+
+
+def power_spectrum(signal: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies (Hz) and one-sided power of a uniformly sampled ``signal`` (n,).
+
+    Hann-windowed periodogram of the signal less its mean, scaled so that a sine of amplitude a
+    shows a line of a^2/2. ``dt`` is in s; the two arrays have shape (n // 2 + 1,).
+    """
+    from scipy.signal import periodogram
+    return periodogram(signal, 1.0 / dt, 'hann', detrend='constant', scaling='spectrum')
+
+
+def peaks(signal: np.ndarray, dt: float, most: int = 5, floor: float = 1.0e-3) -> list[float]:
+    """Return the frequencies (Hz) of the strongest lines of ``signal``, strongest first.
+
+    Lines weaker than ``floor`` times the strongest are left out, as is a signal that is constant
+    to rounding or shorter than 8 samples. A parabola through the logarithm of three neighbouring
+    powers places a line between the bins.
+    """
+    from scipy.signal import find_peaks
+    signal = np.asarray(signal, dtype=float)
+    if len(signal) < 8 or np.ptp(signal) <= 1.0e-9 * np.abs(signal).max():
+        return []
+    frequency, power = power_spectrum(signal, dt)
+    found, _ = find_peaks(power, height=floor * power.max())
+    strongest = found[np.argsort(power[found])[::-1][:most]]
+    return [float(frequency[k] + _offset(power[k - 1:k + 2]) * frequency[1]) for k in strongest]
+
+
+def _offset(power: np.ndarray) -> float:
+    """Return where, in bins from the middle, the parabola through three log powers peaks."""
+    left, middle, right = np.log(np.maximum(power, np.finfo(float).tiny))
+    return 0.5 * (left - right) / (left - 2.0 * middle + right)
+
+
+def relative(signal: np.ndarray, reference: float) -> tuple[float, float]:
+    """Return mean and half the peak-to-peak range of ``signal`` as deviations from ``reference``.
+
+    Both are fractions of ``reference``: (-0.05, 0.05) means 5 % lower on average, swinging by
+    5 % to each side.
+    """
+    deviation = np.asarray(signal) / reference - 1.0
+    return float(np.mean(deviation)), float(0.5 * np.ptp(deviation))
