@@ -12,6 +12,8 @@ p_x = p_xi - (s / J) p_eta and p_y = p_eta / J; the cross diffusion of the shear
 Terms with the slope s vanish away from the membrane and are added there only.
 """
 
+import numpy as np
+
 from dewing_sim.fluid.kernels import kernel
 
 
@@ -54,33 +56,40 @@ def v_explicit(v, before, p, west, east, south, north, dyf, height_c, dgf, theta
 
 
 @kernel
-def _p_eta(p, i, j, dyf, on_plate, middle):
-    """Return dp/deta at a cell centre, never differenced across the plate."""
-    if on_plate and j == middle:
-        return (p[i, j + 1] - p[i, j]) / dyf[j + 1]
-    if on_plate and j == middle - 1:
-        return (p[i, j] - p[i, j - 1]) / dyf[j]
-    return (p[i, j + 1] - p[i, j - 1]) / (dyf[j] + dyf[j + 1])
+def _p_eta(p, i, dyf, on_plate, out):
+    """Fill dp/deta at the cell centres of column i, never differenced across the plate."""
+    ny = len(out)
+    middle = ny // 2
+    for j in range(1, ny - 1):
+        out[j] = (p[i, j + 1] - p[i, j - 1]) / (dyf[j] + dyf[j + 1])
+    if on_plate:
+        out[middle] = (p[i, middle + 1] - p[i, middle]) / dyf[middle + 1]
+        out[middle - 1] = (p[i, middle - 1] - p[i, middle - 2]) / dyf[middle - 1]
 
 
 @kernel
-def _u_eta(u, before, i, j, dy, dyf, blocked, middle):
-    """Return du/deta of the extrapolated u at its own point, with u = 0 on the plate."""
-    below, above = j - 1, j + 1
-    distance = dyf[j] + dyf[j + 1]
-    lower = 2.0 * u[i, below] - before[i, below]
-    upper = 2.0 * u[i, above] - before[i, above]
-    if blocked[i] > 0.75 and j == middle:
-        lower, distance = 0.0, 0.5 * dy[j] + dyf[j + 1]
-    elif blocked[i] > 0.75 and j == middle - 1:
-        upper, distance = 0.0, 0.5 * dy[j] + dyf[j]
-    return (upper - lower) / distance
+def _u_eta(u, before, i, dy, dyf, on_plate, out):
+    """Fill du/deta of the extrapolated u at its own points, with u = 0 on the plate."""
+    ny = len(out)
+    middle = ny // 2
+    for j in range(1, ny - 1):
+        out[j] = ((2.0 * u[i, j + 1] - before[i, j + 1] - 2.0 * u[i, j - 1] + before[i, j - 1])
+                  / (dyf[j] + dyf[j + 1]))
+    if on_plate:
+        above, below = middle + 1, middle - 2
+        out[middle] = ((2.0 * u[i, above] - before[i, above])
+                       / (0.5 * dy[middle] + dyf[above]))
+        out[middle - 1] = -((2.0 * u[i, below] - before[i, below])
+                            / (0.5 * dy[middle] + dyf[middle - 1]))
 
 
 @kernel
-def _u_xi(u, before, i, j, dx):
-    return ((2.0 * u[i + 1, j] - before[i + 1, j] - 2.0 * u[i - 1, j] + before[i - 1, j])
-            / (dx[i - 1] + dx[i]))
+def _u_xi(u, before, i, dx, out):
+    """Fill du/dxi of the extrapolated u at its own points."""
+    distance = dx[i - 1] + dx[i]
+    for j in range(len(out)):
+        out[j] = (2.0 * u[i + 1, j] - before[i + 1, j]
+                  - 2.0 * u[i - 1, j] + before[i - 1, j]) / distance
 
 
 @kernel
@@ -89,42 +98,38 @@ def u_slope_terms(u, before, p, dx, dy, dxf, dyf, height_f, slope_c, slope_f, gc
     """Add the slope terms of u: -p_eta part of p_x and the cross diffusion."""
     nx, ny = p.shape
     middle = ny // 2
+    p_west, p_east, u_xi, cross = np.zeros(ny), np.zeros(ny), np.zeros(ny), np.zeros(ny)
+    u_west, u_here, u_east = np.zeros(ny), np.zeros(ny), np.zeros(ny)
+    through = np.zeros(ny + 1)
     for i in range(2, nx - 1):
         if slope_f[i] == 0.0 and slope_c[i] == 0.0 and slope_c[i - 1] == 0.0:
             continue
-        west_on, east_on = leading <= i - 1 < trailing, leading <= i < trailing
+        _p_eta(p, i - 1, dyf, leading <= i - 1 < trailing, p_west)
+        _p_eta(p, i, dyf, leading <= i < trailing, p_east)
+        _u_eta(u, before, i - 1, dy, dyf, leading < i - 1 < trailing, u_west)
+        _u_eta(u, before, i, dy, dyf, leading < i < trailing, u_here)
+        _u_eta(u, before, i + 1, dy, dyf, leading < i + 1 < trailing, u_east)
+        _u_xi(u, before, i, dx, u_xi)
+        for j in range(1, ny):
+            through[j] = 0.5 * slope_f[i] * gf[j] * (u_xi[j - 1] + u_xi[j])
+        through[middle] *= 1.0 - blocked[i]
         for j in range(1, ny - 1):
-            jacobian = 1.0 + height_f[i] * dgc[j]
-            p_eta = 0.5 * (_p_eta(p, i - 1, j, dyf, west_on, middle)
-                           + _p_eta(p, i, j, dyf, east_on, middle))
-            here = _u_eta(u, before, i, j, dy, dyf, blocked, middle)
-            through_east = 0.5 * slope_c[i] * gc[j] * (
-                here + _u_eta(u, before, i + 1, j, dy, dyf, blocked, middle))
-            through_west = 0.5 * slope_c[i - 1] * gc[j] * (
-                here + _u_eta(u, before, i - 1, j, dy, dyf, blocked, middle))
-            free = 1.0 - blocked[i]
-            open_south = free if j == middle else 1.0
-            open_north = free if j == middle - 1 else 1.0
-            u_xi = _u_xi(u, before, i, j, dx)
-            through_north = 0.5 * open_north * slope_f[i] * gf[j + 1] * (
-                u_xi + _u_xi(u, before, i, j + 1, dx))
-            through_south = 0.5 * open_south * slope_f[i] * gf[j] * (
-                u_xi + _u_xi(u, before, i, j - 1, dx))
-            cross = ((through_east - through_west) / dxf[i]
-                     + (through_north - through_south) / dy[j])
-            r[i, j] += theta * (slope_f[i] * gc[j] * p_eta - nu * cross) / jacobian
+            east = slope_c[i] * (u_here[j] + u_east[j])
+            west = slope_c[i - 1] * (u_here[j] + u_west[j])
+            cross[j] = (0.5 * gc[j] * (east - west) / dxf[i]
+                        + (through[j + 1] - through[j]) / dy[j])
+        for j in range(1, ny - 1):
+            p_eta = 0.5 * (p_west[j] + p_east[j])
+            r[i, j] += theta * (slope_f[i] * gc[j] * p_eta - nu * cross[j]) / (
+                1.0 + height_f[i] * dgc[j])
 
 
 @kernel
-def _v_eta(v, before, i, j, dy):
-    return ((2.0 * v[i, j + 1] - before[i, j + 1] - 2.0 * v[i, j - 1] + before[i, j - 1])
-            / (dy[j - 1] + dy[j]))
-
-
-@kernel
-def _v_xi(v, before, i, j, dxf):
-    return ((2.0 * v[i + 1, j] - before[i + 1, j] - 2.0 * v[i - 1, j] + before[i - 1, j])
-            / (dxf[i] + dxf[i + 1]))
+def _v_eta(v, before, i, dy, out):
+    """Fill dv/deta of the extrapolated v at its own points."""
+    for j in range(1, len(out) - 1):
+        out[j] = ((2.0 * v[i, j + 1] - before[i, j + 1] - 2.0 * v[i, j - 1] + before[i, j - 1])
+                  / (dy[j - 1] + dy[j]))
 
 
 @kernel
@@ -133,21 +138,26 @@ def v_slope_terms(v, before, dx, dy, dxf, dyf, height_c, slope_c, slope_f, gc, g
     """Add the cross diffusion of v."""
     nx, nf = v.shape
     middle = nf // 2
+    v_west, v_here, v_east = np.zeros(nf), np.zeros(nf), np.zeros(nf)
+    v_xi, through = np.zeros(nf), np.zeros(nf)
     for i in range(1, nx - 1):
         if slope_c[i] == 0.0 and slope_f[i] == 0.0 and slope_f[i + 1] == 0.0:
             continue
-        on_plate = leading <= i < trailing
+        _v_eta(v, before, i - 1, dy, v_west)
+        _v_eta(v, before, i, dy, v_here)
+        _v_eta(v, before, i + 1, dy, v_east)
+        distance = dxf[i] + dxf[i + 1]
+        for j in range(nf):
+            v_xi[j] = (2.0 * v[i + 1, j] - before[i + 1, j]
+                       - 2.0 * v[i - 1, j] + before[i - 1, j]) / distance
+        for j in range(nf - 1):
+            through[j] = 0.5 * slope_c[i] * gc[j] * (v_xi[j] + v_xi[j + 1])
+        given = r[i, middle]
         for j in range(1, nf - 1):
-            if on_plate and j == middle:
-                continue
-            here = _v_eta(v, before, i, j, dy)
-            through_east = 0.5 * slope_f[i + 1] * gf[j] * (
-                here + _v_eta(v, before, i + 1, j, dy))
-            through_west = 0.5 * slope_f[i] * gf[j] * (here + _v_eta(v, before, i - 1, j, dy))
-            v_xi = _v_xi(v, before, i, j, dxf)
-            through_north = 0.5 * slope_c[i] * gc[j] * (v_xi + _v_xi(v, before, i, j + 1, dxf))
-            through_south = 0.5 * slope_c[i] * gc[j - 1] * (
-                v_xi + _v_xi(v, before, i, j - 1, dxf))
-            cross = ((through_east - through_west) / dx[i]
-                     + (through_north - through_south) / dyf[j])
+            east = slope_f[i + 1] * (v_here[j] + v_east[j])
+            west = slope_f[i] * (v_here[j] + v_west[j])
+            cross = (0.5 * gf[j] * (east - west) / dx[i]
+                     + (through[j] - through[j - 1]) / dyf[j])
             r[i, j] -= theta * nu * cross / (1.0 + height_c[i] * dgf[j])
+        if leading <= i < trailing:
+            r[i, middle] = given
