@@ -45,31 +45,34 @@ def prbs(samples: int, hold: int = 1, seed: int = 1) -> np.ndarray:
     return np.repeat(2.0 * bits - 1.0, hold)[:samples]
 
 
-def chirp(samples: int, dt: float, low: float, high: float) -> np.ndarray:
-    """Return a sine of unit amplitude swept from ``low`` to ``high`` Hz, logarithmically."""
+def chirp(samples: int, dt: float, low: float, high: float, sweeping: float = 0.6) -> np.ndarray:
+    """Return a sine of unit amplitude swept from ``low`` to ``high`` Hz, logarithmically.
+
+    The sweep fills the share ``sweeping`` of the record; in the rest, at zero, the response
+    decays, so that the ratio of output to input spectrum estimates the frequency response.
+    """
     if not 0.0 < low < high < 0.5 / dt:
         raise BadInput(f'a sweep from {low:g} to {high:g} Hz does not fit between 0 and the '
                        f'Nyquist frequency {0.5 / dt:g} Hz')
-    time = dt * np.arange(samples)
-    return dsp.chirp(time, low, time[-1], high, method='logarithmic', phi=-90.0)
+    time = dt * np.arange(math.ceil(sweeping * samples))
+    u = np.zeros(samples)
+    u[:len(time)] = dsp.chirp(time, low, time[-1], high, method='logarithmic', phi=-90.0)
+    return u
 
 
 def about(shape: np.ndarray, amplitude: float, operating_v_squared: float) -> np.ndarray:
     """Return V^2 (V^2, shape ``(samples,)``) that follows ``shape`` about the operating point.
 
     ``amplitude`` (V^2) is the excursion from V0^2.  V^2 cannot be negative: where V0^2 is smaller
-    than the downward excursion, a signal without rests is squeezed into V0^2 to V0^2 + amplitude
-    (a binary sequence then switches between the two); one that rests at V0^2 is refused.
+    than the downward excursion, the whole signal is halved and raised, into V0^2 to
+    V0^2 + amplitude (a binary sequence then switches between the two).
 
-    Raises `BadInput` for that, for an amplitude that is not positive and for V0^2 < 0.
+    Raises `BadInput` if the amplitude is not positive or finite, or if V0^2 is negative.
     """
     if not (math.isfinite(amplitude) and amplitude > 0.0):
         raise BadInput(f'amplitude = {amplitude:g} V^2 must be positive and finite')
     if not (math.isfinite(operating_v_squared) and operating_v_squared >= 0.0):
         raise BadInput(f'operating V^2 = {operating_v_squared:g} V^2 must not be negative')
     if operating_v_squared + amplitude * shape.min() < 0.0:
-        if shape[-1] == 0.0:
-            raise BadInput(f'an excursion of -{amplitude:g} V^2 from V0^2 = '
-                           f'{operating_v_squared:g} V^2 needs V0^2 of at least {amplitude:g} V^2')
         shape = 0.5 * (shape + 1.0)
     return operating_v_squared + amplitude * shape

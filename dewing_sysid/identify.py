@@ -3,16 +3,18 @@
 """From records to a judged model: the same steps offline, in the node and from a file."""
 
 from dataclasses import dataclass, replace
+from typing import Any, Callable, Sequence
 
 import numpy as np
 import yaml
 
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.plant import Plant
 from dewing_sysid import era
-from dewing_sysid.experiment import Record, unit
+from dewing_sysid.experiment import Record, run_all, unit
 from dewing_sysid.model import Model, nrmse_fit
-from dewing_sysid.plan import EXPERIMENT, HALF, samples, time_scale
+from dewing_sysid.plan import EXPERIMENT, FRESH, HALF, SWEEP, make, samples, time_scale
 from dewing_sysid.settings import Settings
 
 WINDOWS = (0.3, 0.6, 1.2, 2.4, 4.8)     # c/U, about the paper's 1.2
@@ -114,3 +116,31 @@ def linearity(records: dict[str, Record]) -> dict[str, float]:
     full, half = records[EXPERIMENT], records[HALF]
     departure = np.linalg.norm(full.y - 2.0 * half.y, axis=1) / np.linalg.norm(full.y, axis=1)
     return dict(zip(full.names, map(float, departure)))
+
+
+def identify_plant(plant: Plant, start: Any, identity: Identity, settings: Settings,
+                   names: Sequence[str] | None = None, processes: int = 2,
+                   progress: Callable[[float], None] = lambda fraction: None) -> Identification:
+    """Run every experiment on ``plant`` from its rest state ``start`` and identify it.
+
+    Raises `BadInput` as `plan.make`, `experiment.run` and `identify` do.
+    """
+    planned = make(settings, identity, names)
+    outputs = run_all(plant, start, planned.names, list(planned.inputs.values()), processes,
+                      progress)
+    return identify(planned.records(dict(zip(planned.inputs, outputs))), settings, identity)
+
+
+def report(found: Identification) -> dict[str, Any]:
+    """Return what is known of a model as nested words and finite numbers, for JSON."""
+    model = found.model
+    frequency, damping = model.modes()
+    return {
+        'fit': model.fit['window'], 'fit_record': model.fit[EXPERIMENT],
+        'fit_fresh': model.fit.get(FRESH, {}), 'fit_sweep': model.fit.get(SWEEP, {}),
+        'poles_hz': frequency.tolist(), 'poles_damping': damping.tolist(),
+        'singular_values': model.singular_values.tolist(),
+        'spectral_radius': model.spectral_radius, 'order': model.order, 'dt': model.dt,
+        'window_samples': found.window, 'linearity': found.linearity,
+        'reflected_poles': [[pole.real, pole.imag] for pole in found.reflected],
+        'by_order': found.by_order, 'by_window': found.by_window}

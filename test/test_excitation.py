@@ -38,9 +38,10 @@ def test_prbs_refuses_an_empty_register():
 
 def test_chirp_starts_at_zero_and_ends_at_the_upper_frequency():
     dt = 1.0e-4
-    u = excitation.chirp(20000, dt, 10.0, 400.0)
-    crossings = np.flatnonzero(np.diff(np.signbit(u)))
+    u = excitation.chirp(20000, dt, 10.0, 400.0, sweeping=0.9)
+    crossings = np.flatnonzero(np.diff(np.signbit(u[:18000])))
     assert u[0] == pytest.approx(0.0, abs=1e-12)
+    assert not u[18000:].any()
     assert 0.5 / (dt * np.diff(crossings)[-1]) == pytest.approx(400.0, rel=0.05)
 
 
@@ -60,11 +61,6 @@ def test_two_sided_signals_are_squeezed_where_v_squared_would_be_negative(shape)
     v_squared = excitation.about(shape, 100.0, 40.0)
     assert v_squared.min() >= 40.0
     assert v_squared.max() <= 140.0
-
-
-def test_a_doublet_at_zero_voltage_is_refused():
-    with pytest.raises(BadInput, match='V0\\^2 of at least 100'):
-        excitation.about(excitation.doublet(8), 100.0, 40.0)
 
 
 @pytest.mark.parametrize('amplitude, rest', [

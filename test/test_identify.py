@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identification of a wing-like plant with known poles, and refusals of what cannot be used."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +12,8 @@ from synthetic_plant import DAMPING, FREQUENCIES, SyntheticPlant
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
-from dewing_sysid import experiment, plan
-from dewing_sysid.identify import identify, judge
+from dewing_sysid import experiment, figures, plan
+from dewing_sysid.identify import identify, identify_plant, judge, report
 from dewing_sysid.model import Model, nrmse_fit
 from dewing_sysid.settings import Settings
 
@@ -38,17 +39,14 @@ def settings(**changes):
     return parameters.load('sysid', Settings, changed)
 
 
-def records_of(plant, chosen, processes=1):
-    planned = plan.make(chosen, PAPER)
-    runs = experiment.run_all(plant, plant.rest(), planned.names, list(planned.inputs.values()),
-                              processes)
-    return planned.records(dict(zip(planned.inputs, runs)))
+def found_on(plant, chosen, case=CASE, start=None, processes=1):
+    start = plant.rest() if start is None else start
+    return identify_plant(plant, start, identity_of(plant, case), chosen, processes=processes)
 
 
 @pytest.fixture(scope='module')
 def pulsed():
-    chosen = settings()
-    return identify(records_of(SyntheticPlant(), chosen), chosen, PAPER)
+    return found_on(SyntheticPlant(), settings())
 
 
 def test_pulse_gives_the_poles_of_the_plant(pulsed):
@@ -71,6 +69,30 @@ def test_first_sample_is_untouched_and_the_second_is_the_first_markov_parameter(
     assert not model.d.any()
 
 
+def test_report_is_json_with_the_names_of_the_command(pulsed):
+    written = json.loads(json.dumps(report(pulsed), allow_nan=False))
+    assert written['fit']['camber_mean'] > 99.99
+    assert written['fit_fresh']['cl'] > 99.99
+    assert written['order'] == 8
+    assert written['spectral_radius'] < 1.0
+    assert len(written['poles_hz']) == len(written['poles_damping']) == 5
+
+
+def test_figures_are_written(pulsed, tmp_path):
+    paths = figures.save(pulsed, tmp_path / 'figures')
+    assert [path.stem for path in paths] == ['response', 'singular_values', 'bode', 'poles',
+                                             'fresh']
+    assert all(path.read_bytes().startswith(b'\x89PNG') for path in paths)
+
+
+def test_swept_sine_estimates_the_frequency_response(pulsed):
+    frequency, estimate = figures.swept_sine(pulsed.records['chirp'])
+    band = (frequency > 30.0) & (frequency < 300.0)
+    exact = pulsed.model.frequency_response(frequency[band])
+    assert np.count_nonzero(band) > 40
+    assert np.max(np.abs(estimate[:, band] - exact) / np.abs(exact).max(axis=1)[:, None]) < 0.05
+
+
 def test_fit_grows_with_order(pulsed):
     fits = [pulsed.by_order[order]['window']['camber_mean'] for order in (2, 4, 6, 8)]
     assert np.all(np.diff(fits) > 0.0)
@@ -81,16 +103,14 @@ def test_a_linear_plant_passes_the_linearity_check(pulsed):
 
 
 def test_a_hardening_plant_fails_the_linearity_check():
-    chosen = settings()
-    found = identify(records_of(SyntheticPlant(hardening=1e-6), chosen), chosen, PAPER)
+    found = found_on(SyntheticPlant(hardening=1e-6), settings())
     # a (1 + g a) against 2 (a/2)(1 + g a/2) at g a = 0.16: g a / 2 / (1 + g a)
     assert found.linearity['cl'] == pytest.approx(0.08 / 1.16, rel=1e-6)
 
 
 @pytest.mark.parametrize('kind', ['prbs', 'chirp', 'step'])
 def test_other_experiments_give_the_same_poles(kind):
-    chosen = settings(experiment__kind=kind, experiment__hold=4)
-    found = identify(records_of(SyntheticPlant(), chosen), chosen, PAPER)
+    found = found_on(SyntheticPlant(), settings(experiment__kind=kind, experiment__hold=4))
     assert found.model.modes()[0][-3:] == pytest.approx(FREQUENCIES, rel=1e-3)
     assert min(found.model.fit['prbs'].values()) > 99.5
 
@@ -99,19 +119,16 @@ def test_a_doublet_about_a_raised_operating_point_gives_the_same_poles():
     raised = parameters.replace(CASE, {'actuation.voltage': 500.0})
     chosen = settings(experiment__kind='doublet', experiment__hold=2)
     plant = SyntheticPlant()
-    planned = plan.make(chosen, identity_of(plant, raised))
     start = plant.rest()
     for _ in range(200):
         start = plant.step(start, 500.0**2)
-    runs = experiment.run_all(plant, start, planned.names, list(planned.inputs.values()), 1)
-    found = identify(planned.records(dict(zip(planned.inputs, runs))), chosen, PAPER)
+    found = found_on(plant, chosen, raised, start)
     assert found.model.operating_v_squared == 500.0**2
     assert found.model.modes()[0][-3:] == pytest.approx(FREQUENCIES, rel=1e-3)
 
 
 def test_two_processes_give_the_records_of_one():
-    chosen = settings()
-    one, two = (records_of(SyntheticPlant(), chosen, n) for n in (1, 2))
+    one, two = (found_on(SyntheticPlant(), settings(), processes=n).records for n in (1, 2))
     assert list(one) == list(two)
     for run in one:
         assert np.array_equal(one[run].outputs, two[run].outputs)
@@ -187,8 +204,9 @@ def test_a_pulse_above_the_voltage_limit_is_refused_with_both_voltages():
 
 
 def test_a_pulse_that_slackens_the_membrane_is_refused():
+    plant = SyntheticPlant(v_squared_slack=350.0**2)
     with pytest.raises(BadInput, match='V = 400 V slackens the membrane in step 1'):
-        records_of(SyntheticPlant(v_squared_slack=350.0**2), settings())
+        experiment.run(plant, plant.rest(), ['cl'], np.full(3, 400.0**2))
 
 
 def test_a_window_longer_than_the_record_is_refused():
@@ -197,9 +215,8 @@ def test_a_window_longer_than_the_record_is_refused():
 
 
 def test_an_order_the_window_cannot_carry_is_refused():
-    chosen = settings(realisation__window=0.05)
     with pytest.raises(BadInput, match='order = 8 cannot be realised'):
-        identify(records_of(SyntheticPlant(), chosen), chosen, PAPER)
+        found_on(SyntheticPlant(), settings(realisation__window=0.05))
 
 
 def test_an_output_without_response_is_refused(pulsed):
