@@ -19,6 +19,7 @@ from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
+from dewing_sim.plate import starting_circulation
 from dewing_sim.scales import Scales
 from dewing_sim.structure.dynamics import Motion, Operator
 from dewing_sim.structure.membrane import Membrane
@@ -50,8 +51,8 @@ class Wing:
         self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
             case.membrane.prestretch)
         self._resistance = interface.nodal_resistance(self.fluid, self.membrane)
-        self._operator = self.operator(damping=0.0)
         _require_tension(case, math.sqrt(self.v_squared_slack))
+        self._operator = self.operator(damping=0.0)
 
     def rest(self, progress=None) -> State:
         """Return the trimmed state at time 0 under the voltage of the case, cached on disk.
@@ -89,8 +90,15 @@ class Wing:
             raise type(error)(message, state) from None
 
     def operator(self, damping: float) -> Operator:
-        """Return the membrane's iteration operator with the flow's added mass (damping in U/c)."""
-        return Operator.of(self.membrane, self.dt / self.scales.time, self._resistance, damping)
+        """Return the membrane's iteration operator with the flow's added mass (damping in U/c).
+
+        It is made about the static shape under the lift of thin-aerofoil theory, near which the
+        wing will move: that only saves iterations.
+        """
+        mean_jump = starting_circulation(self.case.flow.angle_of_attack, 0.0)   # Cl / 2
+        v_squared = self.case.actuation.voltage**2
+        return Operator.of(self.membrane, self.dt / self.scales.time, self._resistance, damping,
+                           self.membrane.equilibrium(mean_jump, v_squared), v_squared)
 
     def observe(self, state: State) -> Outputs:
         """Return the outputs of ``state`` in SI units."""

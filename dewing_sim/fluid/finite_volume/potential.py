@@ -49,9 +49,9 @@ class Potential:
 
     def outlet_pressure(self, circulation: float) -> np.ndarray:
         """Return Bernoulli's p (ny,) on the outlet, in rho U^2 and zero at infinity."""
-        u, v = self.fluxes(circulation)
-        v_centre = 0.5 * (v[-1, 1:] + v[-1, :-1])
-        return 0.5 * (1.0 - u[-1]**2 - v_centre**2)
+        u = self.stream_x[-1] + circulation * self.vortex_x[-1]
+        v = self.stream_y[-1] + circulation * self.vortex_y[-1]
+        return 0.5 * (1.0 - u**2 - (0.5 * (v[1:] + v[:-1]))**2)
 
 
 def _fluxes(grid: Grid, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
