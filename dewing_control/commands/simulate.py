@@ -1,0 +1,155 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Simulate a wing offline, under a constant voltage or under a controller.
+
+The run starts from the trimmed rest state of the case. A --voltage other than that of the case is
+a step at t = 0. Averages, amplitudes and spectra leave out the first --skip seconds.
+"""
+
+import argparse
+import warnings
+from typing import Any, Iterator, NamedTuple
+
+from dewing_control import options, results
+from dewing_control.progress import Laps, bar, until_interrupted
+from dewing_sim.errors import BadInput
+from dewing_sim.files import check_free
+from dewing_sim.parameters import Case
+
+BREAKDOWN_FIELD = 20.0e6        # V/m, above which thin films of VHB may fail
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    options.add_case(parser)
+    command = parser.add_argument_group('command').add_mutually_exclusive_group()
+    command.add_argument('--voltage', type=float, metavar='V',
+                         help='constant voltage (default: that of the case)')
+    command.add_argument('--controller', metavar='NAME|FILE',
+                         help='close the loop with the controller of a YAML file')
+    options.add_numerics(parser, 's')
+    parser.add_argument('--skip', type=float, metavar='S',
+                        help='leave out the first S seconds of the averages (default: half)')
+    parser.add_argument('--every', type=int, default=10, metavar='N',
+                        help='keep the membrane shape of every N-th step (default: 10)')
+    options.add_results(parser, 'write the whole run as npz')
+    parser.set_defaults(duration=0.2)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Simulate, then write and print the metrics, also of an interrupted run."""
+    case, settings, steps = _check(arguments)
+
+    from dewing_sim.history import Recorder
+    with bar('preparing', 's', arguments.quiet) as show:
+        loop = _prepare(case, arguments, settings, steps, show)
+    recorder, laps = Recorder(case, arguments.every), Laps()
+    try:
+        with bar('simulating', 's', arguments.quiet) as show:
+            for _, outputs in until_interrupted(loop.steps):
+                recorder.add(outputs)
+                laps.add()
+                show(len(recorder), steps, outputs.time)
+    finally:
+        if len(recorder):
+            _deliver(arguments, case, loop, recorder.history(), laps)
+
+
+def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
+    """Return case, controller settings (or None) and steps, all checked before any work."""
+    case = options.load_case(arguments)
+    settings = None
+    if arguments.controller:
+        from dewing_control.settings import ControllerSettings
+        from dewing_sim import parameters
+        settings = parameters.load(arguments.controller, ControllerSettings)
+    steps = options.steps_of(arguments.duration, case.numerics.time_step, 's')
+    options.within('--every', arguments.every, 1, 1_000_000, 'steps')
+    if arguments.skip is not None:
+        options.within('--skip', arguments.skip, 0.0, arguments.duration, 's')
+    for path in filter(None, (arguments.out, arguments.json)):
+        check_free(path, arguments.force)
+    _check_voltage(arguments.voltage, case)
+    return case, settings, steps
+
+
+def _check_voltage(voltage: float | None, case: Case) -> None:
+    """Raise `BadInput` for a voltage that the membrane of ``case`` cannot take."""
+    from dewing_sim.identity import loss_of_tension
+    slack = loss_of_tension(case)**0.5
+    for name, value in (('--voltage', voltage), ('actuation.voltage', case.actuation.voltage)):
+        if value is not None and value >= slack:
+            raise BadInput(f'{name} {value:g} V is out of range: the membrane loses its tension '
+                           f'at {slack:.0f} V')
+    if voltage is not None:
+        options.within('--voltage', voltage, 0.0, case.actuation.voltage_limit, 'V')
+        _warn_of_breakdown(voltage, case)
+
+
+def _warn_of_breakdown(voltage: float, case: Case) -> None:
+    membrane = case.membrane
+    field = voltage * membrane.prestretch * membrane.prestretch_lateral / (
+        membrane.initial_thickness)
+    if field > BREAKDOWN_FIELD:
+        warnings.warn(f'{voltage:.0f} V is a field of {field / 1.0e6:.1f} MV/m in the membrane; '
+                      f'above 20 MV/m the elastomer may break down', RuntimeWarning, stacklevel=2)
+
+
+class Loop(NamedTuple):
+    """A plant, its outputs at rest and the run to come."""
+
+    plant: Any
+    rest: Any
+    steps: Iterator
+
+
+def _prepare(case: Case, arguments: argparse.Namespace, settings: Any, steps: int, show) -> Loop:
+    """Trim the wing and return the run under the controller or the constant voltage."""
+    from dewing_sim.build import build_wing
+    from dewing_sim.plant import rollout
+    built = build_wing(case, show)
+    wing, rest = built.plant, built.rest
+    if settings:
+        from dewing_control.closed_loop import closed_loop, controller
+        run = closed_loop(wing, rest, controller(settings, built.identity), steps)
+    else:
+        voltage = case.actuation.voltage if arguments.voltage is None else arguments.voltage
+        run = rollout(wing, rest, lambda _: voltage**2, steps)
+    return Loop(wing, wing.observe(rest), run)
+
+
+def _deliver(arguments: argparse.Namespace, case: Case, loop: Loop, history, laps: Laps) -> None:
+    metrics = _metrics(arguments, case, loop, history, laps)
+    if arguments.out:
+        history.save(arguments.out, arguments.force)
+    if arguments.controller:
+        _warn_of_breakdown(metrics['v_max'], case)
+    results.deliver(arguments, metrics)
+
+
+def _metrics(arguments, case: Case, loop: Loop, history, laps: Laps) -> dict:
+    import numba
+
+    from dewing_sim.spectrum import peaks, relative
+    end = float(history.time[-1])
+    start = 0.5 * end if arguments.skip is None or arguments.skip >= end else arguments.skip
+    late = history.since(start)
+    mean, amplitude = relative(late.camber_mean, loop.rest.camber_mean)
+    return {
+        'case': arguments.case, 'engine': case.numerics.engine, 'grid': case.numerics.grid,
+        'dt': loop.plant.dt, 'steps': len(history), 'duration': end, 'averaged_from': start,
+        'cl_mean': float(late.cl.mean()), 'cl_rms': float(late.cl.std()),
+        'cd_mean': float(late.cd.mean()), 'cm_mean': float(late.cm.mean()),
+        'y_star': float(late.camber_max.mean()) / loop.plant.reference_deflection,
+        'camber_max': float(late.camber_max.mean()),
+        'camber_max_x_c': float(late.camber_max_position.mean()),
+        'camber_mean': float(late.camber_mean.mean()),
+        'camber_mean_relative': mean, 'camber_amplitude_relative': amplitude,
+        'tension': float(late.tension.mean()),
+        'v_min': float(late.voltage.min()), 'v_max': float(late.voltage.max()),
+        'rtf': end / laps.total, 'ms_per_step': 1.0e3 * laps.best(),
+        'threads': numba.get_num_threads(),
+        'coupling_iterations_mean': float(late.coupling_iterations.mean()),
+        'spectrum_peaks_hz': peaks(late.cl, loop.plant.dt),
+        'camber_peaks_hz': peaks(late.camber_mean, loop.plant.dt),
+    }
