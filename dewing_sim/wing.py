@@ -59,7 +59,8 @@ class Wing:
 
         ``progress(done, total)`` is called along the way if the state has to be computed.
         """
-        from dewing_sim import trim     # trim marches a Wing
+        from dewing_sim import trim  # here because trim marches a Wing
+
         return trim.rest(self, progress)
 
     def step(self, state: State, v_squared: float) -> State:

@@ -15,10 +15,14 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Wall:
-    """Membrane seen by the flow: heights at the column faces (n + 1,), column velocities (n,)."""
+    """Membrane seen by the flow: heights at the column faces (n + 1,), column velocities (n,).
+
+    ``edge_velocity`` is that of leading and trailing edge, zero where they are pinned.
+    """
 
     height: np.ndarray
     velocity: np.ndarray
+    edge_velocity: tuple[float, float] = (0.0, 0.0)
 
     @classmethod
     def flat(cls, columns: np.ndarray) -> 'Wall':

@@ -132,8 +132,7 @@ class FiniteVolume:
         projection.correct(fx, fy, phi, grid.dxf, grid.dyf, self.theta,
                            grid.leading, grid.trailing)
         u, v = projection.velocities(grid, self._g, fields.metrics, fx, fy)
-        motion = fields.metrics.velocity.copy()
-        motion[grid.plate] = velocity
+        motion = mapping.grid_velocity(grid, replace(prediction.wall, velocity=velocity))
         self._guard(u)
         return FlowState(u, v, fx, fy - np.outer(motion, self._g.f), state.p + phi,
                          state.u, state.v, state.fx, state.w,

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The computational grid: a stretched tensor product whose lines meet both edges of the plate.
 
-Chord-wise coordinate xi, normal coordinate eta, both in chords; the plate is 0 <= xi <= 1, eta = 0.
-Staggered unknowns: pressure at cell centres, u on faces of constant xi, v on faces of constant eta.
+Chord-wise coordinate xi, normal coordinate eta, both in chords; the plate is 0 <= xi <= 1 at
+eta = 0.  Staggered unknowns: pressure at cell centres, u on faces of constant xi, v on faces of
+constant eta.
 """
 
 from dataclasses import dataclass
@@ -30,9 +31,9 @@ class Spacing:
 
 
 PRESETS = {
-    'fast': Spacing(0.009, 0.015, 0.06, 0.006, 0.18, 0.14, 0.35, 0.18, 0.45),
+    'fast': Spacing(0.006, 0.015, 0.05, 0.0025, 0.15, 0.12, 0.35, 0.14, 0.40, 0.4),
     'standard': Spacing(0.003, 0.006, 0.025, 0.001, growth_near=0.09, near=0.4),
-    'fine': Spacing(0.0015, 0.003, 0.015, 0.001, 0.07, 0.04, 0.12, 0.07, 0.15),
+    'fine': Spacing(0.0015, 0.003, 0.015, 0.0007, 0.07, 0.04, 0.12, 0.06, 0.15),
 }
 
 

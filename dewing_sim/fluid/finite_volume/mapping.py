@@ -35,13 +35,15 @@ class Decay(NamedTuple):
 
 
 def decay(grid: Grid) -> Decay:
-    """Return the decay function of the map on ``grid``."""
-    def g(eta):
-        return np.exp(-eta**2)
+    """Return the decay function of the map on ``grid``.
 
-    def dg(eta):
-        return -2.0 * eta * np.exp(-eta**2)
-    return Decay(g(grid.y), g(grid.yc), dg(grid.y), dg(grid.yc))
+    Its slopes are differences of its own values, so that a uniform stream has exactly no
+    divergence on the deformed grid; at the outer faces they are zero.
+    """
+    f, c = np.exp(-grid.y**2), np.exp(-grid.yc**2)
+    df = np.zeros_like(f)
+    df[1:-1] = np.diff(c) / grid.dyf[1:-1]
+    return Decay(f, c, df, np.diff(f) / grid.dy)
 
 
 def metrics(grid: Grid, wall: Wall) -> Metrics:
@@ -54,12 +56,22 @@ def metrics(grid: Grid, wall: Wall) -> Metrics:
     slope_c = np.diff(height_f) / grid.dx
     slope_f = np.zeros_like(height_f)
     slope_f[1:-1] = np.diff(height_c) / grid.dxf[1:-1]
-    velocity = np.zeros(len(grid.dx))
-    velocity[grid.plate] = wall.velocity
-    return Metrics(height_f, height_c, slope_f, slope_c, velocity)
+    return Metrics(height_f, height_c, slope_f, slope_c, grid_velocity(grid, wall))
+
+
+def grid_velocity(grid: Grid, wall: Wall) -> np.ndarray:
+    """Return Y_t at the column centres (nx,)."""
+    upstream, downstream = _decays(grid, grid.xc[:grid.leading], grid.xc[grid.trailing:])
+    return np.concatenate((wall.edge_velocity[0] * upstream, wall.velocity,
+                           wall.edge_velocity[1] * downstream))
 
 
 def _extend(grid: Grid, height: np.ndarray) -> np.ndarray:
-    upstream = height[0] * np.exp(-grid.x[:grid.leading]**2)
-    downstream = height[-1] * np.exp(-(grid.x[grid.trailing + 1:] - 1.0)**2)
-    return np.concatenate((upstream, height, downstream))
+    upstream, downstream = _decays(grid, grid.x[:grid.leading], grid.x[grid.trailing + 1:])
+    return np.concatenate((height[0] * upstream, height, height[-1] * downstream))
+
+
+def _decays(grid: Grid, before: np.ndarray, behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far the grid follows the edges at stations before and behind the plate."""
+    return (np.exp(-(before - grid.x[grid.leading])**2),
+            np.exp(-(behind - grid.x[grid.trailing])**2))

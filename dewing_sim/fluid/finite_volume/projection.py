@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """From predicted velocities to fluxes without divergence, and back.
 
-The fluxes through the sheared cell faces are Fx = J u and Fy = v - s u.  The flat pressure operator
-corrects the *fluxes*: exactly divergence-free on the deformed grid, while the mismatch with the
-metric acts on the pressure increment only, which is O(dt).
+The fluxes through the sheared cell faces are Fx = J u and Fy = v - s u.  The flat pressure
+operator corrects the *fluxes*: exactly divergence-free on the deformed grid, while the mismatch
+with the metric acts on the pressure increment only, which is O(dt).
 """
 
 import numpy as np
@@ -18,7 +18,8 @@ def fluxes(grid: Grid, g: Decay, m: Metrics, u: np.ndarray, v: np.ndarray,
            ) -> tuple[np.ndarray, np.ndarray]:
     """Return Fx (nx + 1, ny) and Fy (nx, ny + 1) of the velocities."""
     fx, fy = np.empty_like(u), v.copy()
-    _to_fluxes(u, fx, fy, grid.dy, m.height_f, m.slope_c, g.f, g.dc)
+    _to_fluxes(u, fx, fy, grid.dy, m.height_f, m.slope_c, g.f, g.dc,
+               grid.leading, grid.trailing)
     return fx, fy
 
 
@@ -26,7 +27,8 @@ def velocities(grid: Grid, g: Decay, m: Metrics, fx: np.ndarray, fy: np.ndarray,
                ) -> tuple[np.ndarray, np.ndarray]:
     """Return u and v of the fluxes: the inverse of `fluxes`."""
     u, v = np.empty_like(fx), fy.copy()
-    _to_velocities(fx, u, v, grid.dy, m.height_f, m.slope_c, g.f, g.dc)
+    _to_velocities(fx, u, v, grid.dy, m.height_f, m.slope_c, g.f, g.dc,
+                   grid.leading, grid.trailing)
     return u, v
 
 
@@ -38,27 +40,33 @@ def _shear(u, i, j, dy, slope, g):
 
 
 @kernel
-def _to_fluxes(u, fx, fy, dy, height_f, slope_c, gf, dgc):
+def _to_fluxes(u, fx, fy, dy, height_f, slope_c, gf, dgc, leading, trailing):
     nx, ny = len(slope_c), len(dy)
     for i in range(nx + 1):
         for j in range(ny):
             fx[i, j] = u[i, j] * (1.0 + height_f[i] * dgc[j])
     for i in range(nx):
         if slope_c[i] != 0.0:
+            at_wall = fy[i, ny // 2]
             for j in range(1, ny):
                 fy[i, j] -= _shear(u, i, j, dy, slope_c[i], gf[j])
+            if leading <= i < trailing:             # u = 0 on the plate
+                fy[i, ny // 2] = at_wall
 
 
 @kernel
-def _to_velocities(fx, u, v, dy, height_f, slope_c, gf, dgc):
+def _to_velocities(fx, u, v, dy, height_f, slope_c, gf, dgc, leading, trailing):
     nx, ny = len(slope_c), len(dy)
     for i in range(nx + 1):
         for j in range(ny):
             u[i, j] = fx[i, j] / (1.0 + height_f[i] * dgc[j])
     for i in range(nx):
         if slope_c[i] != 0.0:
+            at_wall = v[i, ny // 2]
             for j in range(1, ny):
                 v[i, j] += _shear(u, i, j, dy, slope_c[i], gf[j])
+            if leading <= i < trailing:             # u = 0 on the plate
+                v[i, ny // 2] = at_wall
 
 
 @kernel

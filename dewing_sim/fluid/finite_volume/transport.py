@@ -8,8 +8,8 @@ For a control volume of size J dxi deta the operator is
     c_nb = theta (D_nb - F_nb / 2 + beta |F_nb| / 2) / (J dxi deta),
 
 with F the outward volume flux relative to the moving grid, D = nu (metric) area / distance and
-beta the share of upwinding, zero near the membrane.  The convective form F (phi_nb - phi_P) / 2 has
-zero row sum: a uniform stream is kept exactly on any moving grid, without a geometric
+beta the share of upwinding, zero near the membrane.  The convective form F (phi_nb - phi_P) / 2
+has zero row sum: a uniform stream is kept exactly on any moving grid, without a geometric
 conservation law.  Fluxes (Fx, W) are those of the projection less the motion of the grid.
 """
 
