@@ -35,11 +35,12 @@ setup(
     ],
     install_requires=[
         'matplotlib>=3.6',
-        'mcap>=1.1',
+        'mcap>=1.6',
         'numba>=0.59',
         'numpy>=1.23',
         'pyyaml>=6.0',
         'rich>=12.0',
+        'rosbags>=0.10',
         'scipy>=1.10',
     ],
     extras_require={
@@ -52,7 +53,6 @@ setup(
             'hypothesis>=6.60',
             'pytest>=7.4',
             'pytest-timeout>=2.1',
-            'rosbags>=0.9.20',
         ],
         'lint': [
             'flake8>=6.0',

@@ -47,13 +47,13 @@ class Identity:
     version: str
 
     @classmethod
-    def of(cls, name: str, plant: Plant, rest: Any, v_squared_slack: float, v_squared_max: float,
-           case: dict) -> 'Identity':
+    def of(cls, name: str, plant: Plant, rest: Any, v_squared_max: float, case: dict,
+           ) -> 'Identity':
         """Return the identity of ``plant``; raise `BadInput` for unusable references."""
         outputs = plant.observe(rest)
         identity = cls(name, float(plant.dt), float(outputs.camber_mean),
-                       float(outputs.camber_max), float(v_squared_slack), float(v_squared_max),
-                       case, version())
+                       float(outputs.camber_max), float(plant.v_squared_slack),
+                       float(v_squared_max), case, version())
         return identity.checked()
 
     def checked(self) -> 'Identity':

@@ -42,7 +42,10 @@ SCALARS = ('time', 'v_squared', 'cl', 'cd', 'cm', 'camber_mean', 'camber_max',
 
 
 class Measurement(NamedTuple):
-    """What a controller sees of a plant at one instant (SI); ``v_squared`` led here."""
+    """What a controller sees of a plant at one instant (SI); ``v_squared`` led here.
+
+    ``time`` is a whole number of nanoseconds, as in the stamp of a message.
+    """
 
     time: float
     camber_mean: float
@@ -54,7 +57,8 @@ class Measurement(NamedTuple):
     @classmethod
     def of(cls, outputs: Outputs) -> 'Measurement':
         """Return the measured part of ``outputs``."""
-        return cls(*(getattr(outputs, name) for name in cls._fields))
+        return cls(round(outputs.time * 1.0e9) * 1.0e-9,
+                   *(getattr(outputs, name) for name in cls._fields[1:]))
 
 
 class Plant(Protocol):

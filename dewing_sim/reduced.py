@@ -14,12 +14,10 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-import yaml
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.identity import loss_of_tension
-from dewing_sim.parameters import Case
 from dewing_sim.plant import SCALARS, Outputs
 
 
@@ -159,8 +157,7 @@ def load(path) -> Reduced:
 
 
 def _limits(case_yaml: str) -> dict[str, float]:
-    tree = yaml.safe_load(case_yaml)
-    case = parameters.from_mapping(Case, tree.get('/**', {}).get('ros__parameters', tree))
+    case = parameters.from_yaml(case_yaml)
     return dict(v_squared_slack=loss_of_tension(case),
                 v_squared_max=case.actuation.voltage_limit**2)
 

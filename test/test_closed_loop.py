@@ -14,8 +14,7 @@ from dewing_sim.identity import Identity, loss_of_tension
 
 
 def identity_of(plant):
-    return Identity.of('reduced', plant, plant.rest(), plant.v_squared_slack,
-                       plant.v_squared_max, {})
+    return Identity.of('reduced', plant, plant.rest(), plant.v_squared_max, {})
 
 
 def run(steps=4000, disturbance=0.05, changes=None):

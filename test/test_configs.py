@@ -10,11 +10,12 @@ import yaml
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
 from dewing_sim.parameters import Case
+from dewing_sim.settings import SimulatorSettings
 from dewing_sysid.settings import Settings
 
 CONFIG = Path(__file__).parents[1] / 'config'
 FILES = sorted(path.stem for path in CONFIG.glob('*.yaml'))
-SCHEMAS = {'controller': ControllerSettings, 'sysid': Settings}
+SCHEMAS = {'controller': ControllerSettings, 'simulator': SimulatorSettings, 'sysid': Settings}
 CASES = [name for name in FILES if name not in SCHEMAS]
 
 

@@ -1,0 +1,63 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""From parameters to a plant with its states, its files and its identity."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from dewing_sim import parameters, reduced
+from dewing_sim.errors import BadInput
+from dewing_sim.identity import Identity
+from dewing_sim.parameters import Case
+from dewing_sim.plant import Plant
+from dewing_sim.settings import SimulatorSettings
+
+
+@dataclass(frozen=True)
+class Built:
+    """A plant, its rest state, what it is, and how its states go to a file and back."""
+
+    plant: Plant
+    rest: Any
+    identity: Identity
+    save: Callable[[str, Any], None]
+    load: Callable[[str], Any]
+
+
+def build(settings: SimulatorSettings, case: Case, progress=None) -> Built:
+    """Return what ``settings`` and ``case`` describe; raise `BadInput` if they cannot.
+
+    ``progress(done, total)`` is called while a wing is trimmed.
+    """
+    if settings.run.plant == 'wing':
+        return build_wing(case, progress)
+    if not settings.model:
+        raise BadInput('model is empty: the reduced plant needs the npz file of its matrices')
+    return build_reduced(settings.model)
+
+
+def build_wing(case: Case, progress=None) -> Built:
+    """Return the Navier-Stokes wing of ``case``, trimmed."""
+    from dewing_sim import checkpoint
+    from dewing_sim.wing import Wing
+    wing = Wing(case)
+    rest = wing.rest(progress)
+    identity = Identity.of('wing', wing, rest, case.actuation.voltage_limit**2,
+                           parameters.to_mapping(case))
+
+    def load(path: str) -> Any:
+        if checkpoint.load_case(path) != case:
+            raise BadInput(f'{path}: the saved state belongs to another case')
+        return checkpoint.load(path)
+
+    return Built(wing, rest, identity,
+                 lambda path, state: checkpoint.save(path, state, case), load)
+
+
+def build_reduced(model: str) -> Built:
+    """Return the linear plant of the npz file ``model``."""
+    plant = reduced.load(model)
+    rest = plant.rest()
+    identity = Identity.of('reduced', plant, rest, plant.v_squared_max, {})
+    return Built(plant, rest, identity, plant.save, plant.load)

@@ -1,0 +1,76 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""A plant stepped by commands that carry the stamp of the measurement they answer."""
+
+import math
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any
+
+from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.plant import SCALARS, Outputs, Plant
+
+
+def nanoseconds(time: float) -> int:
+    """Return ``time`` (s) as the whole nanoseconds of a stamp."""
+    return round(time * 1.0e9)
+
+
+@dataclass
+class LockStep:
+    """The present state of a run and its counters; never steps on a command it refuses."""
+
+    plant: Plant
+    state: Any
+    v_squared_max: float
+    outputs: Outputs = field(init=False)
+    v_squared: float = field(init=False)    # in force
+    steps: int = 0                          # made in this run
+    stale: int = 0                          # commands with another stamp
+    rejected: int = 0                       # commands with an unusable value
+    plant_seconds: float = 0.0              # wall time spent in the plant
+
+    def __post_init__(self):
+        """Observe the first state."""
+        self.restart(self.state)
+
+    def restart(self, state: Any):
+        """Continue from ``state`` with the V^2 that led to it."""
+        self.state, self.outputs = state, self._observe(state)
+        self.v_squared = self.outputs.v_squared
+
+    @property
+    def stamp(self) -> int:
+        """Stamp of the present measurement in ns of simulated time."""
+        return nanoseconds(self.outputs.time)
+
+    def expects(self, stamp: int) -> bool:
+        """Return whether ``stamp`` is that of the present measurement; count it if not."""
+        if stamp == self.stamp:
+            return True
+        self.stale += 1
+        return False
+
+    def check(self, v_squared: float):
+        """Raise `BadInput`, and count it, unless ``v_squared`` is admissible."""
+        if not 0.0 <= v_squared <= self.v_squared_max:
+            self.rejected += 1
+            raise BadInput(f'command v_squared = {v_squared} V^2 is out of range, '
+                           f'from 0 to {self.v_squared_max:g} V^2')
+
+    def advance(self, v_squared: float):
+        """Make one step; on `RunFailed` the last good state stays in ``state``."""
+        began = perf_counter()
+        state = self.plant.step(self.state, v_squared)
+        self.outputs = self._observe(state)
+        self.state, self.v_squared = state, v_squared
+        self.steps += 1
+        self.plant_seconds += perf_counter() - began
+
+    def _observe(self, state: Any) -> Outputs:
+        outputs = self.plant.observe(state)
+        for name in SCALARS:
+            value = getattr(outputs, name)
+            if not math.isfinite(value):
+                raise Diverged(f'{name} = {value} after step {self.steps + 1}', self.state)
+        return outputs

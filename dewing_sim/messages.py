@@ -1,0 +1,187 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Outputs, commands and parameters to ROS messages and back: pure functions.
+
+Frames: ``wing`` has x along the chord from the leading edge and y towards the suction side,
+``wind`` has x along the free stream and y along the lift; z follows from the right-hand rule.
+"""
+
+import dataclasses
+from array import array
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import WrenchStamped
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState, PointCloud2, PointField
+from std_msgs.msg import Float64
+
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput
+from dewing_sim.parameters import Flow
+from dewing_sim.plant import Measurement, Outputs
+
+MEASURED = list(Measurement._fields[1:])
+COMMANDED = ['v_squared']
+MEMBRANE_FIELDS = ('x', 'y', 'z', 'dp', 'tension')
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+
+
+def to_stamp(nanoseconds: int) -> Time:
+    """Return the stamp of a whole number of nanoseconds."""
+    seconds, rest = divmod(nanoseconds, 1_000_000_000)
+    return Time(sec=seconds, nanosec=rest)
+
+
+def from_stamp(stamp: Time) -> int:
+    """Return the nanoseconds of a stamp."""
+    return stamp.sec * 1_000_000_000 + stamp.nanosec
+
+
+def measurement(outputs: Outputs) -> JointState:
+    """Return the measured quantities (SI) by name, stamped with simulated time."""
+    seen = Measurement.of(outputs)
+    message = JointState(name=MEASURED, position=array('d', seen[1:]))
+    message.header.stamp = to_stamp(round(outputs.time * 1.0e9))
+    return message
+
+
+def to_measurement(message: JointState) -> Measurement:
+    """Return the quantities of a message; raise `BadInput` if one is missing."""
+    values = dict(zip(message.name, message.position))
+    try:
+        return Measurement(from_stamp(message.header.stamp) * 1.0e-9,
+                           *(values[name] for name in MEASURED))
+    except KeyError as error:
+        raise BadInput(f'measurement without {error.args[0]}') from None
+
+
+def command(v_squared: float, stamp: Time) -> JointState:
+    """Return the command V^2 that answers the measurement stamped ``stamp``."""
+    message = JointState(name=COMMANDED, effort=array('d', [v_squared]))
+    message.header.stamp = stamp
+    return message
+
+
+def to_v_squared(message: JointState) -> float:
+    """Return V^2 of a command; raise `BadInput` if it is not one."""
+    if list(message.name) != COMMANDED or len(message.effort) != 1:
+        raise BadInput(f'command with names {list(message.name)} and {len(message.effort)} '
+                       f'efforts; expected one effort named v_squared')
+    return message.effort[0]
+
+
+def scalar(value: float) -> Float64:
+    """Return a plain number to echo and plot."""
+    return Float64(data=float(value))
+
+
+def clock(time: float) -> Clock:
+    """Return simulated time (s)."""
+    return Clock(clock=to_stamp(round(time * 1.0e9)))
+
+
+def membrane(outputs: Outputs) -> PointCloud2:
+    """Return the membrane nodes in m with the pressure jump in Pa and the tension in N/m."""
+    points = np.zeros((outputs.x.size, len(MEMBRANE_FIELDS)), np.float32)
+    points[:, 0], points[:, 1] = outputs.x, outputs.y
+    points[:, 3], points[:, 4] = outputs.pressure_jump, outputs.tension
+    message = PointCloud2(height=1, width=len(points), is_dense=True, is_bigendian=False)
+    message.header.frame_id = 'wing'
+    message.header.stamp = to_stamp(round(outputs.time * 1.0e9))
+    message.fields = [PointField(name=name, offset=4 * i, datatype=PointField.FLOAT32, count=1)
+                      for i, name in enumerate(MEMBRANE_FIELDS)]
+    message.point_step = 4 * len(MEMBRANE_FIELDS)
+    message.row_step = message.point_step * len(points)
+    message.data = array('B', points.astype('<f4').tobytes())
+    return message
+
+
+def loads(outputs: Outputs, flow: Flow, chord: float) -> WrenchStamped:
+    """Return drag and lift (N/m) and the moment about c/4 (N) per unit span in wind axes.
+
+    The moment about z is positive nose down, as the right-hand rule has it.
+    """
+    scale = flow.dynamic_pressure * chord
+    message = WrenchStamped()
+    message.header.frame_id = 'wind'
+    message.header.stamp = to_stamp(round(outputs.time * 1.0e9))
+    message.wrench.force.x = scale * outputs.cd
+    message.wrench.force.y = scale * outputs.cl
+    message.wrench.torque.z = -scale * chord * outputs.cm
+    return message
+
+
+def diagnostics(name: str, level: bytes, sentence: str, values: Mapping[str, Any], stamp: Time,
+                ) -> DiagnosticArray:
+    """Return the status of the component ``name`` with ``values`` as text."""
+    status = DiagnosticStatus(name=name, level=level, message=sentence, hardware_id='dewing')
+    status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
+    message = DiagnosticArray(status=[status])
+    message.header.stamp = stamp
+    return message
+
+
+def descriptor(field: dataclasses.Field, read_only: bool) -> ParameterDescriptor:
+    """Return meaning, unit and range of a schema field for ``ros2 param describe``."""
+    result = ParameterDescriptor(description=parameters.describe(field), read_only=read_only)
+    meta = field.metadata
+    if 'low' in meta and meta['type'] is float:
+        result.floating_point_range = [FloatingPointRange(
+            from_value=meta['low'], to_value=meta['high'])]
+    elif 'low' in meta:
+        result.integer_range = [IntegerRange(from_value=meta['low'], to_value=meta['high'])]
+    if 'options' in meta:
+        result.additional_constraints = 'one of ' + ', '.join(meta['options'])
+    return result
+
+
+def leaves(section: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:
+    """Yield (dotted name, value, schema field) of every leaf of ``section``."""
+    for name, field in parameters.fields(type(section)):
+        value = section
+        for key in name.split('.'):
+            value = getattr(value, key)
+        yield name, value, field
+
+
+def take_overrides(node) -> dict[str, Any]:
+    """Return the parameters given to a node from outside, and leave them undeclared.
+
+    The node must have been made with ``automatically_declare_parameters_from_overrides``; what
+    ROS itself declares stays declared.
+    """
+    given = {name: parameter.value for name, parameter
+             in node.get_parameters_by_prefix('').items()
+             if not name.startswith(('qos_overrides.', 'use_sim_time', 'start_type_desc'))}
+    for name in given:
+        node.undeclare_parameter(name)
+    return given
+
+
+def declare(node, section: Any, read_only: bool) -> None:
+    """Declare every leaf of ``section`` with its value, unit, meaning and range."""
+    for name, value, field in leaves(section):
+        node.declare_parameter(name, value, descriptor(field, read_only), ignore_override=True)
+
+
+def changed(section: Any, given) -> tuple[Any, SetParametersResult]:
+    """Return ``section`` with ROS parameters ``given`` replaced, and the answer to the setter.
+
+    Names outside the section are not its business; a refused value leaves it as it is.
+    """
+    known = {name for name, _value, _field in leaves(section)}
+    changes = {item.name: item.value for item in given if item.name in known}
+    try:
+        return parameters.replace(section, changes), SetParametersResult(successful=True)
+    except BadInput as error:
+        return section, SetParametersResult(successful=False, reason=str(error))

@@ -1,0 +1,99 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The recorder node: every topic of its namespace, the clock and diagnostics into an MCAP bag.
+
+It is for machines without ``ros2 bag record``, whose files it matches.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from time import time_ns
+from typing import Any
+
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from dewing_sim import bag, harness, messages, parameters
+from dewing_sim.parameters import text
+
+DEPTH = 10000               # messages the middleware may hold while this process is not scheduled
+DISCOVERY_PERIOD = 0.05     # s
+FLUSH_PERIOD = 0.5          # s
+COMMON = ('/clock', '/diagnostics')
+
+
+@dataclass(frozen=True)
+class RecorderSettings:
+    """Parameters of the recorder."""
+
+    output: str = text('MCAP file to write; it must not exist')
+
+
+class RecorderNode(Node):
+    """Subscribes to topics as they appear and writes what they carry, unread, to the bag."""
+
+    def __init__(self, overrides: Mapping[str, Any] | None = None, **options):
+        super().__init__('recorder', namespace='dewing', **harness.overrides(overrides),
+                         **options)
+        given = {'output': 'dewing.mcap'} | messages.take_overrides(self)
+        self.settings = parameters.from_mapping(RecorderSettings, given)
+        messages.declare(self, self.settings, read_only=True)
+        self.exit_status: int | None = None
+        self.reason = ''
+        self.bag = bag.BagWriter(self.settings.output)
+        self._topics: set[str] = set()
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(DISCOVERY_PERIOD, self._discover, clock=steady)
+        self.create_timer(FLUSH_PERIOD, self._flush, clock=steady)
+
+    def _discover(self):
+        own = self.get_namespace().rstrip('/') + '/'
+        for topic, kinds in self.get_topic_names_and_types():
+            if topic in self._topics or not (topic.startswith(own) or topic in COMMON):
+                continue
+            publishers = self.get_publishers_info_by_topic(topic)
+            if publishers and bag.is_known(kinds[0]):
+                self._subscribe(topic, kinds[0], publishers[0].qos_profile)
+
+    def _subscribe(self, topic: str, kind: str, offered: QoSProfile):
+        self._topics.add(topic)
+        package, _, name = kind.split('/')
+        self.bag.add_topic(topic, kind, dict(
+            reliability=offered.reliability.name.lower(),
+            durability=offered.durability.name.lower()))
+        reliable = offered.reliability is not ReliabilityPolicy.BEST_EFFORT
+        latched = offered.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        qos = QoSProfile(
+            depth=DEPTH,
+            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE)
+
+        def write(data, info):
+            self._guarded(lambda: self.bag.write(topic, data, time_ns(),
+                                                 info['source_timestamp']))
+
+        self.create_subscription(getattr(import_module(f'{package}.msg'), name), topic, write,
+                                 qos, raw=True)
+
+    def _flush(self):
+        self._guarded(self.bag.flush)
+
+    def _guarded(self, act):
+        """Run ``act``; a full disk ends the recording, not the run that is recorded."""
+        if self.exit_status is None:
+            try:
+                act()
+            except OSError as error:
+                self.exit_status = 1
+                self.reason = f'{self.settings.output}: recording stopped ({error.strerror})'
+
+    def interrupt(self):
+        """Close the bag."""
+        self._guarded(self.bag.close)
+
+
+def main(args=None) -> int:
+    """Record until SIGINT or SIGTERM; return the exit status."""
+    return harness.main(RecorderNode, args)

@@ -1,0 +1,40 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The schema of the simulator node's own parameters; those of the case stand beside them."""
+
+from dataclasses import dataclass
+
+from dewing_sim.parameters import choice, count, real, text
+
+
+@dataclass(frozen=True)
+class Run:
+    """How the simulator keeps step; time-outs are in wall time, rates in simulated time."""
+
+    plant: str = choice('what is simulated', 'wing', 'reduced')
+    mode: str = choice(
+        'wait for the command that answers each measurement, or step on with the last one',
+        'lockstep', 'free')
+    duration: float = real('s', 'simulated time after which the run ends, 0: never', 0.0, 1.0e6)
+    subscribers: int = count('listeners to measurement to wait for before the first step', 0, 100)
+    discovery_timeout: float = real(
+        's', 'longest wait for listeners and a controller before the first step', 0.1, 1.0e6)
+    command_timeout: float = real(
+        's', 'wait for a valid command after which a warning is published', 0.01, 1.0e6)
+    hold_timeout: float = real(
+        's', 'further wait, with the last command held, after which the run stops', 0.0, 1.0e6)
+    resend_period: float = real(
+        's', 'wait after which an unanswered measurement is published again', 0.05, 1.0e3)
+    scalar_rate: float = real('Hz', 'rate of clock, scalars and loads', 1.0e-3, 1.0e9)
+    membrane_rate: float = real('Hz', 'rate of the membrane shape', 1.0e-3, 1.0e9)
+
+
+@dataclass(frozen=True)
+class SimulatorSettings:
+    """Parameters of the simulator that do not belong to the case."""
+
+    case: str = text('shipped case or YAML file the wing is built from')
+    model: str = text('npz file of the reduced plant')
+    save: str = text('npz file for the last state; after a failure dewing_state.npz if empty')
+    restore: str = text('npz file of a saved state to start from, the rest state if empty')
+    run: Run
