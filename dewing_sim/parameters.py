@@ -1,47 +1,40 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""The schema of every parameter: its dataclass is documentation, check and ROS descriptor.
+"""Every physical parameter, and its files.
 
-Two doors, one room: `load` reads a ROS-format YAML file, the nodes read declared ROS parameters;
-both end in `from_mapping`, which accepts exactly the fields of a dataclass, each with the right
-type and inside its range, and otherwise raises `BadInput` naming field, value, unit and range.
+The dataclasses are documentation, check and ROS descriptors in one. Two doors, one room: `load`
+reads a ROS-format YAML file, the nodes read declared ROS parameters; both end in the strict
+`from_mapping`.
 """
 
-import dataclasses
 import math
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Any, Iterator, Mapping, TypeVar
+from typing import Any, Mapping
 
 import yaml
 
 from dewing_sim.errors import BadInput
+from dewing_sim.schema import (
+    Section,
+    check,
+    choice,
+    count,
+    describe,
+    fields,
+    from_mapping,
+    real,
+    replace,
+    text,
+    to_mapping,
+)
 
-Section = TypeVar('Section')
-
-
-def real(unit: str, meaning: str, low: float, high: float) -> Any:
-    """Declare a floating-point field with its unit, meaning and admissible range."""
-    return dataclasses.field(metadata=dict(
-        type=float, unit=unit, meaning=meaning, low=low, high=high))
-
-
-def count(meaning: str, low: int, high: int) -> Any:
-    """Declare a whole-number field with its meaning and admissible range."""
-    return dataclasses.field(metadata=dict(
-        type=int, unit='', meaning=meaning, low=low, high=high))
-
-
-def choice(meaning: str, *options: str) -> Any:
-    """Declare a field that takes one of a few words."""
-    return dataclasses.field(metadata=dict(
-        type=str, unit='', meaning=meaning, options=options))
-
-
-def text(meaning: str) -> Any:
-    """Declare a free-text field, such as a path; it may be empty."""
-    return dataclasses.field(metadata=dict(type=str, unit='', meaning=meaning))
+__all__ = [
+    'Actuation', 'Case', 'Disturbance', 'Flow', 'Membrane', 'Numerics', 'check', 'choice',
+    'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml', 'load',
+    'parse_assignment', 'real', 'replace', 'text', 'to_mapping', 'to_yaml',
+]
 
 
 @dataclass(frozen=True)
@@ -119,99 +112,6 @@ class Case:
     numerics: Numerics
     actuation: Actuation
     disturbance: Disturbance
-
-
-def fields(schema: type, prefix: str = '') -> Iterator[tuple[str, dataclasses.Field]]:
-    """Yield (dotted name, field) of every leaf of a schema, depth first."""
-    for field in dataclasses.fields(schema):
-        if dataclasses.is_dataclass(field.type):
-            yield from fields(field.type, f'{prefix}{field.name}.')
-        else:
-            yield prefix + field.name, field
-
-
-def describe(field: dataclasses.Field) -> str:
-    """Return meaning, unit and range of a field in one line, for descriptors and errors."""
-    meta = field.metadata
-    if 'options' in meta:
-        return f"{meta['meaning']}; one of {', '.join(meta['options'])}"
-    if 'low' not in meta:
-        return meta['meaning']
-    unit = f" [{meta['unit']}]" if meta['unit'] else ''
-    return f"{meta['meaning']}{unit}, from {meta['low']:g} to {meta['high']:g}"
-
-
-def check(name: str, field: dataclasses.Field, value: Any) -> Any:
-    """Return ``value`` if ``field`` admits it; raise `BadInput` otherwise."""
-    wanted = field.metadata['type']
-    if type(value) is not wanted:
-        hint = _FLOAT_HINT if wanted is float else ''
-        raise BadInput(f'{name} = {value!r} is not a {_TYPE_NAMES[wanted]}{hint}: '
-                       f'{describe(field)}')
-    if 'options' in field.metadata:
-        admissible = value in field.metadata['options']
-    elif 'low' in field.metadata:
-        admissible = field.metadata['low'] <= value <= field.metadata['high']
-    else:
-        admissible = True
-    if not admissible:
-        raise BadInput(f'{name} = {value!r} is out of range: {describe(field)}')
-    return value
-
-
-_TYPE_NAMES = {float: 'floating-point number', int: 'whole number', str: 'word'}
-# YAML 1.1 reads 1e-4 and 1.0e4 as words, and ROS refuses an integer for a double.
-_FLOAT_HINT = ' (write it with a decimal point and a signed exponent, as in 1.0 or 2.0e+4)'
-
-
-def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section:
-    """Build a schema instance from nested mappings with exactly its keys.
-
-    Raises `BadInput` for unknown or missing keys, wrong types and values out of range.
-    """
-    if not isinstance(mapping, Mapping):
-        raise BadInput(f"{name or 'parameters'}: expected keys and values, got {mapping!r}")
-    known = {field.name: field for field in dataclasses.fields(schema)}
-    for key in mapping:
-        if key not in known:
-            raise BadInput(f'{_join(name, key)} is not a parameter; '
-                           f"known here: {', '.join(known)}")
-    values = {}
-    for key, field in known.items():
-        path = _join(name, key)
-        if key not in mapping:
-            raise BadInput(f'{path} is missing{_missing_hint(field)}')
-        nested = dataclasses.is_dataclass(field.type)
-        values[key] = (from_mapping(field.type, mapping[key], path) if nested
-                       else check(path, field, mapping[key]))
-    return schema(**values)
-
-
-def _join(prefix: str, key: Any) -> str:
-    return f'{prefix}.{key}' if prefix else str(key)
-
-
-def _missing_hint(field: dataclasses.Field) -> str:
-    return f': {describe(field)}' if field.metadata else ' (a section)'
-
-
-def to_mapping(section: Any) -> dict:
-    """Return the nested mapping from which `from_mapping` rebuilds ``section``."""
-    return dataclasses.asdict(section)
-
-
-def replace(section: Section, changes: Mapping[str, Any]) -> Section:
-    """Return ``section`` with dotted keys changed, checked as on loading."""
-    mapping = to_mapping(section)
-    for name, value in changes.items():
-        *path, last = name.split('.')
-        target = mapping
-        for key in path:
-            target = target.get(key) if isinstance(target, dict) else None
-        if not isinstance(target, dict):
-            raise BadInput(f"{name} is not a parameter; sections here: {', '.join(mapping)}")
-        target[last] = value
-    return from_mapping(type(section), mapping)
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:

@@ -105,19 +105,21 @@ def _show_progress(lines, file) -> None:
 
 
 def add_to_ament_index(folder: Path) -> None:
-    """Put the marker and the executables where ``ros2 run`` looks, below ``folder``.
+    """Put marker, share and executables where ``ros2 run`` looks, which an editable install omits.
 
     The executables are links to the console scripts, which name this environment's Python.
     """
     marker = folder / 'share' / 'ament_index' / 'resource_index' / 'packages' / 'dewing'
-    library = folder / 'lib' / 'dewing'
-    for parent in (marker.parent, library):
-        parent.mkdir(parents=True, exist_ok=True)
+    marker.parent.mkdir(parents=True, exist_ok=True)
     marker.touch()
-    for name in EXECUTABLES:
-        link = library / name
+    share = folder / 'share' / 'dewing'
+    links = {share / name: PROJECT / name for name in ('config', 'package.xml')}
+    links |= {folder / 'lib' / 'dewing' / name: Path('..', '..', 'bin', f'dewing_{name}')
+              for name in EXECUTABLES}
+    for link, target in links.items():
+        link.parent.mkdir(parents=True, exist_ok=True)
         link.unlink(missing_ok=True)
-        link.symlink_to(Path('..', '..', 'bin', f'dewing_{name}'))
+        link.symlink_to(target)
 
 
 def _runs(python: str, code: str) -> bool:

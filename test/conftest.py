@@ -15,8 +15,9 @@ os.environ.setdefault('MPLBACKEND', 'Agg')
 os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 os.environ.setdefault('ROS_LOG_DIR', tempfile.mkdtemp(prefix='dewing-ros-log-'))
 os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
-if not os.environ.get('AMENT_PREFIX_PATH'):
-    os.environ['AMENT_PREFIX_PATH'] = sys.prefix        # the ROS wheels do not set it
+# The ROS wheels do not set it, and a sourced system ROS does not know this environment.
+os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join(
+    [sys.prefix, *filter(None, [os.environ.get('AMENT_PREFIX_PATH')])])
 
 
 @pytest.fixture
