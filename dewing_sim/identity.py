@@ -13,6 +13,7 @@ import yaml
 from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Plant
+from dewing_sim.scales import Scales
 
 
 def version() -> str:
@@ -25,12 +26,9 @@ def version() -> str:
 
 def loss_of_tension(case: Case) -> float:
     """Return V_L^2, the V^2 at which the flat prestretched membrane of ``case`` goes slack."""
-    from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer, Sheet
-    membrane = case.membrane
-    elastomer = Elastomer(membrane.shear_modulus, membrane.gent_limit, membrane.bulk_modulus,
-                          VACUUM_PERMITTIVITY * membrane.relative_permittivity)
-    sheet = Sheet(elastomer, membrane.initial_thickness, membrane.prestretch_lateral)
-    return sheet.loss_of_tension_v_squared(membrane.prestretch)
+    from dewing_sim.structure.membrane import Membrane
+    membrane = Membrane.from_parameters(case.membrane, Scales.of(case.flow, case.membrane.chord))
+    return membrane.sheet.loss_of_tension_v_squared(case.membrane.prestretch)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged, Slack
 from dewing_sim.scales import Scales
+from dewing_sim.structure.material import diagonal
 from dewing_sim.structure.membrane import Membrane, dense
 
 SECTION = parameters.load('paper').membrane
@@ -48,9 +49,10 @@ def energy(membrane, position, v_squared):
     sheet = membrane.sheet
     stretch = membrane.stretch(position)
     thickness = sheet.respond(stretch, v_squared).thickness
-    density = [sheet.elastomer.free_energy(
-        (l1, sheet.lateral_stretch, h / sheet.initial_thickness),
-        v_squared / sheet.initial_thickness ** 2) for l1, h in zip(stretch, thickness)]
+    stretches = np.stack([stretch, np.full_like(stretch, sheet.lateral_stretch),
+                          thickness / sheet.initial_thickness], axis=-1)
+    field = (0.0, 0.0, np.sqrt(v_squared) / sheet.initial_thickness)
+    density = sheet.elastomer.energy(diagonal(stretches), field)
     area = 1.0 / (membrane.stretch_per_length * sheet.lateral_stretch)
     return sheet.initial_thickness * np.dot(density, area)
 
@@ -127,10 +129,10 @@ def test_dense_tangent_is_the_band_and_symmetric():
     matrix = membrane.dense_tangent(position, 0.0)
     band = membrane.tangent(position, 0.0)
     assert band.shape == (7, 14)
-    for diagonal in range(-3, 4):
-        expected = np.diagonal(matrix, diagonal)
-        row = band[3 - diagonal]
-        assert np.array_equal(row[diagonal:] if diagonal >= 0 else row[:diagonal], expected)
+    for offset in range(-3, 4):
+        expected = np.diagonal(matrix, offset)
+        row = band[3 - offset]
+        assert np.array_equal(row[offset:] if offset >= 0 else row[:offset], expected)
     assert np.abs(matrix - matrix.T).max() <= 1e-12 * np.abs(matrix).max()
 
 

@@ -18,7 +18,8 @@ from scipy.linalg import solve_banded
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged, NotConverged, RunFailed, Slack
 from dewing_sim.scales import Scales
-from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer, Sheet
+from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer
+from dewing_sim.structure.sheet import Sheet
 
 SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
 BANDWIDTH = 3       # of the free degrees of freedom x1, y1, x2, y2, ... on either side

@@ -1,0 +1,143 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The thin-sheet reduction of the material: principal stretches, traction-free faces.
+
+With the field along l_3 the derivatives of W with respect to e_i = log l_i are the Kirchhoff
+stresses tau_i = J sigma_i, which contain the Maxwell stress: +eps E^2/2 along the field and
+-eps E^2/2 across. They follow from `material` with I1 = sum l_i^2, J = l_1 l_2 l_3 and
+Y = l_1 l_2 V / H.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.structure.material import Elastomer, modulus, slopes, stress
+
+
+@numba.njit(cache=True)
+def kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps):
+    """Return tau_1, tau_3, the moduli d tau_i / d e_k for ik = 11, 13, 33, and I1bar."""
+    j = l1 * l2 * l3
+    b1, b3 = l1 * l1, l3 * l3
+    i1 = b1 + l2 * l2 + b3
+    y = (l1 * l2) ** 2 * field_squared
+    s = slopes(i1, j, y, mu, jm, bulk, eps)
+    # By logarithms: dJ = J, d(I1)/2 = l_i^2, d(Y^2)/2 = Y^2 for i = 1 and 0 for i = 3.
+    return (stress(s, b1, j, y), stress(s, b3, j, 0.0),
+            modulus(s, b1, j, y, b1, j, y, 2.0 * b1, j, 2.0 * y),
+            modulus(s, b1, j, y, b3, j, 0.0, 0.0, j, 0.0),
+            modulus(s, b3, j, 0.0, b3, j, 0.0, 2.0 * b3, j, 0.0),
+            i1 * j ** (-2.0 / 3.0))
+
+
+_BALANCED, _LOCKED, _PULLED_IN = 0, 1, 2
+
+
+@numba.njit(cache=True)
+def _balance_thickness(l1, l2, l3, field_squared, mu, jm, bulk, eps):
+    """Solve tau_3 = 0 for l_3; return tau_1, d tau_1/d e_1, d tau_1/d field_squared, l_3, status.
+
+    Newton from the given l_3. The last correction is condensed into tau_1, which leaves an error
+    of its square.
+    """
+    for _ in range(60):
+        t1, t3, c11, c13, c33, i1 = kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps)
+        if not i1 - 3.0 < jm:
+            return t1, c11, 0.0, l3, _LOCKED
+        if not c33 > 0.0:
+            return t1, c11, 0.0, l3, _PULLED_IN
+        change = -t3 / c33
+        if abs(change) < 1.0e-8:
+            slope = -0.5 * eps * l1 * l2 / l3 * (1.0 + c13 / c33)
+            return (t1 + c13 * change, c11 - c13 * c13 / c33, slope, l3 * (1.0 + change),
+                    _BALANCED)
+        l3 *= math.exp(min(max(change, -0.5), 0.5))
+    return t1, c11, 0.0, l3, _PULLED_IN
+
+
+@numba.njit(cache=True)
+def _respond(stretch, lateral, thickness, v_squared, mu, jm, bulk, eps):
+    """Fill rows tension, its slopes in stretch and V^2, thickness; return status and element."""
+    response = np.empty((4, stretch.size))
+    field_squared = v_squared / thickness ** 2
+    volume = 1.0        # J of the neighbour is the best first guess
+    for k in range(stretch.size):
+        l1 = stretch[k]
+        tau, modulus, slope, l3, status = _balance_thickness(
+            l1, lateral, volume / (l1 * lateral), field_squared, mu, jm, bulk, eps)
+        if status != _BALANCED:
+            return response, status, k
+        volume = l1 * lateral * l3
+        scale = thickness / (l1 * lateral)
+        response[0, k] = scale * tau
+        response[1, k] = scale * (modulus - tau) / l1
+        response[2, k] = scale * slope / thickness ** 2
+        response[3, k] = thickness * l3
+    return response, _BALANCED, -1
+
+
+class Response(NamedTuple):
+    """State of a sheet at given stretches, each of shape (n,)."""
+
+    tension: np.ndarray             # T = sigma_1 h, force per unit deformed span
+    stiffness: np.ndarray           # dT / d stretch at constant V
+    voltage_slope: np.ndarray       # dT / dV^2 at constant stretch, -eps/h when incompressible
+    thickness: np.ndarray           # h
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A thin layer of elastomer between compliant electrodes, with traction-free faces.
+
+    The through-thickness stress vanishes, sigma_3 = 0 with Maxwell stress included, which
+    determines the thickness stretch; the lateral stretch is fixed (1: plane strain).
+    """
+
+    elastomer: Elastomer
+    initial_thickness: float
+    lateral_stretch: float = 1.0
+
+    def respond(self, stretch, v_squared: float) -> Response:
+        """Return tension, slopes and thickness at total stretches (n,) and the given V^2.
+
+        Raises `BadInput` for a negative or non-finite V^2, `Diverged` beyond the Gent limit or
+        where the field squeezes the thickness to nothing.
+        """
+        if not 0.0 <= v_squared < math.inf:
+            raise BadInput(f'v_squared = {v_squared} V^2 is out of range: from 0 to infinity')
+        stretch = np.asarray(stretch, dtype=float)
+        response, status, k = _respond(stretch, self.lateral_stretch, self.initial_thickness,
+                                       float(v_squared), *self.elastomer.constants)
+        if status != _BALANCED:
+            raise Diverged(self._describe_failure(status, k, stretch[k], v_squared))
+        return Response(*response)
+
+    def _describe_failure(self, status: int, element: int, stretch: float, v_squared: float,
+                          ) -> str:
+        where = f'element {element} at stretch {stretch:.6g} and {math.sqrt(v_squared):.6g} V'
+        if not math.isfinite(stretch):
+            return f'{where}: the deformation is not finite; reduce the time step or the load'
+        if status == _LOCKED:
+            return (f'{where}: I1bar - 3 reaches the Gent limit '
+                    f'{self.elastomer.gent_limit:.6g}; reduce the load or the prestretch')
+        return f'{where}: no thickness balances the Maxwell stress; reduce the voltage'
+
+    def loss_of_tension_v_squared(self, stretch: float) -> float:
+        """Return the V^2 at which the tension vanishes at the given total stretch.
+
+        In the incompressible limit h^2 sigma/eps; zero where there is no tension to lose.
+        """
+        v_squared = 0.0
+        for _ in range(100):
+            response = self.respond([stretch], v_squared)
+            change = -float(response.tension[0] / response.voltage_slope[0])
+            v_squared = max(0.0, v_squared + change)
+            if abs(change) <= 1.0e-12 * v_squared or v_squared == 0.0:
+                return v_squared
+        raise Diverged(f'no loss of tension found at stretch {stretch:.6g}: V^2 = {v_squared:.6g} '
+                       f'still changes by {change:.3g}; the thickness pulls in before')
