@@ -30,6 +30,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
+from rosgraph_msgs.msg import Clock
 
 from dewing_sim.errors import BadInput, DewingError, RunFailed
 
@@ -72,6 +73,10 @@ class Session:
                 raise RunFailed(f'the condition did not hold within {timeout:g} s')
             self.executor.spin_once(timeout_sec=min(SPIN, remaining))
 
+    def watch_clock(self) -> 'ClockWatch':
+        """Return a node that knows the simulated time published in this domain."""
+        return self.add(ClockWatch)
+
     def __enter__(self) -> 'Session':
         return self
 
@@ -80,6 +85,18 @@ class Session:
         for node in self.nodes:
             node.destroy_node()
         self.context.try_shutdown()
+
+
+class ClockWatch(Node):
+    """Listens to ``/clock``; ``time`` is the latest simulated time in s."""
+
+    def __init__(self, parameters: Mapping[str, Any] | None = None, **options):
+        super().__init__('clock_watch', namespace='dewing', **overrides(parameters), **options)
+        self.time = 0.0
+        self.create_subscription(Clock, '/clock', self._on_clock, 1)
+
+    def _on_clock(self, message: Clock):
+        self.time = message.clock.sec + 1.0e-9 * message.clock.nanosec
 
 
 def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:

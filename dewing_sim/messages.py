@@ -8,7 +8,7 @@ Frames: ``wing`` has x along the chord from the leading edge and y towards the s
 
 import dataclasses
 from array import array
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -145,15 +145,6 @@ def descriptor(field: dataclasses.Field, read_only: bool) -> ParameterDescriptor
     return result
 
 
-def leaves(section: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:
-    """Yield (dotted name, value, schema field) of every leaf of ``section``."""
-    for name, field in parameters.fields(type(section)):
-        value = section
-        for key in name.split('.'):
-            value = getattr(value, key)
-        yield name, value, field
-
-
 def take_overrides(node) -> dict[str, Any]:
     """Return the parameters given to a node from outside, and leave them undeclared.
 
@@ -170,7 +161,7 @@ def take_overrides(node) -> dict[str, Any]:
 
 def declare(node, section: Any, read_only: bool) -> None:
     """Declare every leaf of ``section`` with its value, unit, meaning and range."""
-    for name, value, field in leaves(section):
+    for name, value, field in parameters.leaves(section):
         node.declare_parameter(name, value, descriptor(field, read_only), ignore_override=True)
 
 
@@ -179,7 +170,7 @@ def changed(section: Any, given) -> tuple[Any, SetParametersResult]:
 
     Names outside the section are not its business; a refused value leaves it as it is.
     """
-    known = {name for name, _value, _field in leaves(section)}
+    known = {name for name, _value, _field in parameters.leaves(section)}
     changes = {item.name: item.value for item in given if item.name in known}
     try:
         return parameters.replace(section, changes), SetParametersResult(successful=True)

@@ -24,6 +24,7 @@ from dewing_sim.schema import (
     describe,
     fields,
     from_mapping,
+    leaves,
     real,
     replace,
     text,
@@ -32,7 +33,7 @@ from dewing_sim.schema import (
 
 __all__ = [
     'Actuation', 'Case', 'Disturbance', 'Flow', 'Membrane', 'Numerics', 'check', 'choice',
-    'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml', 'load',
+    'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml', 'leaves', 'load',
     'parse_assignment', 'real', 'replace', 'text', 'to_mapping', 'to_yaml',
 ]
 

@@ -46,6 +46,15 @@ def fields(schema: type, prefix: str = '') -> Iterator[tuple[str, dataclasses.Fi
             yield prefix + field.name, field
 
 
+def leaves(section: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:
+    """Yield (dotted name, value, field) of every leaf of an instance."""
+    for name, field in fields(type(section)):
+        value = section
+        for key in name.split('.'):
+            value = getattr(value, key)
+        yield name, value, field
+
+
 def describe(field: dataclasses.Field) -> str:
     """Return meaning, unit and range of a field in one line, for descriptors and errors."""
     meta = field.metadata
