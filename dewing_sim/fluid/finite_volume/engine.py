@@ -164,7 +164,8 @@ class FiniteVolume:
 
     def _solve_u(self, state, m, fx, w) -> np.ndarray:
         grid, g = self.grid, self._g
-        west, east, south, north, change = _scratch(5, state.u.shape)
+        west, east, south, north = np.empty((4, *state.u.shape))
+        change = np.zeros_like(state.u)         # the far field is given
         drag = np.zeros((2, len(grid.x)))
         transport.u_coefficients(
             fx, w, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c, m.height_f, m.slope_f,
@@ -184,7 +185,8 @@ class FiniteVolume:
 
     def _solve_v(self, state, m, wall, fx, w) -> np.ndarray:
         grid, g = self.grid, self._g
-        west, east, south, north, change = _scratch(5, state.v.shape)
+        west, east, south, north = np.empty((4, *state.v.shape))
+        change = np.zeros_like(state.v)
         transport.v_coefficients(
             fx, w, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c, m.height_f, m.slope_c,
             g.c, g.dc, g.df, self._upwind_xc, self._upwind_y, grid.leading, grid.trailing,
@@ -212,10 +214,6 @@ class FiniteVolume:
         if not fastest < FASTEST:
             raise Diverged(f'the flow reached {fastest:.3g} free-stream speeds: '
                            'lower the time step or refine the grid')
-
-
-def _scratch(number: int, shape: tuple[int, int]) -> np.ndarray:
-    return np.zeros((number, *shape))
 
 
 def _upwind(distance: np.ndarray) -> np.ndarray:
