@@ -5,7 +5,7 @@
 VENV ?= .venv
 BIN = $(VENV)/bin
 PYTEST_OPTIONS ?=
-DEMO_OPTIONS ?=
+DEMO_OPTIONS ?= --force
 BENCH_OPTIONS ?=
 
 .PHONY: help venv demo test lint bench clean

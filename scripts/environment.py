@@ -140,7 +140,11 @@ def main() -> None:
         return
     started = time.monotonic()
     print(f'Python: {sys.executable} ({platform.python_version()}).')
-    print(REASONS[source], flush=True)
+    print(REASONS[source])
+    if source != 'system' and os.environ.get('AMENT_PREFIX_PATH'):
+        print('AMENT_PREFIX_PATH is set, but this Python cannot import the rclpy of that ROS: '
+              'work in a shell without it, since two ROS in one process do not agree.')
+    sys.stdout.flush()
     create(folder, source)
     stamp.unlink(missing_ok=True)
     install(folder, source)

@@ -97,6 +97,9 @@ def fails(capsys, arguments, status: int = 2) -> str:
     (['plate', '--alpha', '4', '--engine', 'panel'], '--engine panel is not known'),
     (['plate', '--alpha', '4', '--duration', '0'], '--duration 0 t* is out of range'),
     (['plate', '--alpha', '4', '--skip', '-1'], '--skip -1 is out of range'),
+    (['demo', '--case', 'papier'], "'papier' is not a shipped configuration"),
+    (['demo', '--controller', 'missing.yaml'], 'missing.yaml: no such file'),
+    (['demo', '--duration', '0'], '--duration 0 s is out of range'),
 ])
 def test_bad_input_ends_with_status_2_and_one_sentence(capsys, arguments, complaint):
     assert complaint in fails(capsys, arguments)

@@ -106,6 +106,19 @@ def test_ros_wheels_are_an_extra_for_the_machines_they_exist_for(setup):
         assert 'sys_platform == "linux"' in requirement and '"x86_64"' in requirement
 
 
+@pytest.mark.parametrize('machine, version, source', [
+    ('x86_64', (3, 10), 'wheels'), ('x86_64', (3, 13), 'wheels'), ('x86_64', (3, 14), 'none'),
+    ('aarch64', (3, 12), 'none'), ('arm64', (3, 12), 'none')])
+def test_ros_comes_from_wheels_where_they_exist(monkeypatch, machine, version, source):
+    environment = runpy.run_path(str(PROJECT / 'scripts' / 'environment.py'))
+    monkeypatch.delenv('AMENT_PREFIX_PATH')
+    monkeypatch.setattr('platform.machine', lambda: machine)
+    monkeypatch.setattr(sys, 'version_info', version)
+    monkeypatch.setattr(sys, 'platform', 'linux')
+    assert environment['ros_source']() == source
+    assert 'ROS: ' in environment['REASONS'][source]
+
+
 def set_up(folder) -> subprocess.CompletedProcess:
     return subprocess.run([sys.executable, PROJECT / 'scripts' / 'environment.py', folder],
                           capture_output=True, text=True)
