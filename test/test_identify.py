@@ -21,7 +21,7 @@ CASE = parameters.load('paper')
 
 
 def identity_of(plant, case=CASE):
-    return Identity.of('synthetic', plant, plant.rest(), plant.v_squared_slack,
+    return Identity.of('synthetic', plant, plant.rest(),
                        case.actuation.voltage_limit**2,
                        parameters.to_mapping(case))
 
