@@ -151,7 +151,8 @@ def report_kept(demo: Demo) -> None:
 def evaluate(demo: Demo, began: float) -> dict[str, Any]:
     """Write figure and metrics of the recorded bags; return the metrics."""
     runs = {name: demo_results.Run.read(demo.bag(name)) for name in RUNS}
-    metrics = demo_results.metrics(runs, demo.case, demo.duration)
+    metrics = demo_results.metrics(runs, demo.case, demo.settings.command.voltage_limit,
+                                   demo.duration)
     demo_results.draw(runs, demo.settings.reference.target - 1.0, demo.out / 'closed_loop.png')
     metrics['seconds'] = perf_counter() - began
     write_json(demo.out / 'metrics.json', metrics)

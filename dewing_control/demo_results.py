@@ -64,24 +64,31 @@ class Run:
 
 
 def loop_metrics(run: Run, frequency: float) -> dict[str, float]:
-    """Return camber and voltage figures over the late part of a run."""
+    """Return camber and voltage over the late part of a run, and its wall time a step."""
     late = run.late(frequency)
     camber, voltage = run.camber[late], run.voltage[late]
-    v_squared, largest = run.series['v_squared'][late], run.identity.v_squared_max
     return dict(camber_mean=float(camber.mean()), camber_amplitude=0.5 * float(np.ptp(camber)),
                 v_min=float(voltage.min()), v_max=float(voltage.max()),
-                saturation_share=float(np.mean((v_squared <= 0.0) | (v_squared >= largest))),
                 ms_per_step=float(run.status['ms_per_step']))
 
 
-def metrics(runs: Mapping[str, Run], case: Case, duration: float) -> dict[str, Any]:
+def saturation_share(run: Run, limit: float) -> float:
+    """Return the share of all steps at V = 0 or at the voltage ``limit``."""
+    voltage = run.voltage[1:]       # the first sample precedes every command
+    return float(np.mean((voltage <= 0.0) | (voltage >= limit * (1.0 - 1.0e-9))))
+
+
+def metrics(runs: Mapping[str, Run], case: Case, limit: float, duration: float,
+            ) -> dict[str, Any]:
     """Return the metrics of open and closed loop; ``seconds`` is the caller's to add.
 
-    Camber is relative to the undisturbed passive camber; ``steps_lost`` counts measurements
+    ``limit`` is the controller's largest voltage. Camber is relative to the undisturbed passive camber; ``steps_lost`` counts measurements
     missing from the bags and commands that answered another step than the one in progress.
     """
     closed = runs['closed_loop']
     result = {name: loop_metrics(run, case.disturbance.frequency) for name, run in runs.items()}
+    limit = min(limit, closed.identity.v_squared_max**0.5)
+    result['closed_loop']['saturation_share'] = saturation_share(closed, limit)
     mismatched = sum(max(0, int(run.status['stale']) - int(run.status['resent']))
                      for run in runs.values())
     return result | dict(
@@ -105,7 +112,7 @@ def draw(runs: Mapping[str, Run], target: float, path: Path) -> None:
     camber.set_ylabel('mean camber change (%)')
     voltage.set_ylabel('voltage (V)')
     voltage.set_xlabel('time (s)')
-    camber.legend(loc='center right', frameon=True)
+    camber.legend(ncols=3, loc='center right', bbox_to_anchor=(1.0, 0.72))
     for axes in (camber, voltage):
         axes.grid(alpha=0.3)
         axes.margins(x=0.0)
@@ -117,11 +124,11 @@ def print_table(result: Mapping[str, Any]) -> None:
     rows = (('mean camber change', 'camber_mean', 100.0, '%'),
             ('camber oscillation, +-', 'camber_amplitude', 100.0, '%'),
             ('lowest voltage', 'v_min', 1.0, 'V'), ('highest voltage', 'v_max', 1.0, 'V'),
-            ('saturated share of time', 'saturation_share', 100.0, '%'),
             ('wing, wall time a step', 'ms_per_step', 1.0, 'ms'))
     print(f"{'':26}{'open loop':>12}{'closed loop':>14}")
     for label, key, scale, unit in rows:
         values = [scale * result[name][key] for name in ('open_loop', 'closed_loop')]
         print(f'{label:26}{values[0]:12.3f}{values[1]:14.3f} {unit}')
+    print(f"V saturated in {result['closed_loop']['saturation_share']:.1%} of the closed loop")
     print(f"{result['steps']} steps, {result['steps_lost']} lost, lock-step overhead "
           f"{result['overhead_ms_per_step']:.2f} ms a step, {result['seconds']:.0f} s in all")

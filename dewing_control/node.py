@@ -73,7 +73,8 @@ class ControllerNode(Node):
             self._memory = self._law.start(measurement.v_squared)
         self._memory, self._v_squared = self._law.step(self._memory, measurement)
         self._answers += 1
-        self._saturated += self._v_squared in (0.0, self._law.controller.v_squared_max)
+        limit = min(self.settings.command.voltage_limit**2, self.identity.v_squared_max)
+        self._saturated += self._v_squared in (0.0, limit)
 
     def _on_parameters(self, given):
         self.settings, answer = messages.changed(self.settings, given)

@@ -7,6 +7,7 @@ leaves a file that `read` (and ``mcap recover``) can use up to the last chunk.
 """
 
 import functools
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -114,7 +115,7 @@ def _records(path: str | Path) -> Iterator[Any]:
     try:
         with open(path, 'rb') as file:
             yield from StreamReader(file).records
-    except EndOfFile:
+    except (EndOfFile, struct.error):       # mcap has no word of its own for half a record
         return
     except OSError as error:
         raise BadInput(f'{path}: cannot be read ({error.strerror})') from None

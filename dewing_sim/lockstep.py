@@ -27,7 +27,7 @@ class LockStep:
     v_squared: float = field(init=False)    # in force
     steps: int = 0                          # made in this run
     stale: int = 0                          # commands with another stamp
-    rejected: int = 0                       # commands with an unusable value
+    rejected: int = 0                       # unusable commands
     plant_seconds: float = 0.0              # wall time spent in the plant
 
     def __post_init__(self):
@@ -52,9 +52,8 @@ class LockStep:
         return False
 
     def check(self, v_squared: float):
-        """Raise `BadInput`, and count it, unless ``v_squared`` is admissible."""
+        """Raise `BadInput` unless ``v_squared`` is admissible."""
         if not 0.0 <= v_squared <= self.v_squared_max:
-            self.rejected += 1
             raise BadInput(f'command v_squared = {v_squared} V^2 is out of range, '
                            f'from 0 to {self.v_squared_max:g} V^2')
 

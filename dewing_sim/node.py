@@ -145,6 +145,7 @@ class SimulatorNode(Node):
             v_squared = messages.to_v_squared(message)
             self.lockstep.check(v_squared)
         except BadInput as error:
+            self.lockstep.rejected += 1
             self._set_status(messages.WARN, str(error))
             return
         if free:

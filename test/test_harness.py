@@ -1,0 +1,222 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes in one executor: the loop in ten lines, faults injected, services, live parameters."""
+
+import math
+
+import pytest
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from reduced_wing import CAMBER, first_mode
+from ros_processes import offline
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from std_srvs.srv import SetBool, Trigger
+
+from dewing_control.node import LATCHED, ControllerNode
+from dewing_sim import harness, messages, reduced
+from dewing_sim.errors import RunFailed
+from dewing_sim.identity import Identity
+from dewing_sim.node import SimulatorNode
+
+TIMEOUT = 30.0
+
+
+class Scripted(Node):
+    """Keeps the measurements it gets; publishes commands only when told to."""
+
+    def __init__(self, _parameters=None, **options):
+        super().__init__('scripted', namespace='dewing', **options)
+        self.measurements, self.commands = [], []
+        self.out = self.create_publisher(JointState, 'command', 10)
+        self.create_subscription(JointState, 'measurement', self.measurements.append, 10)
+
+    def send(self, v_squared, stamp=None, name='v_squared'):
+        message = messages.command(v_squared, stamp or self.measurements[-1].header.stamp)
+        message.name = [name]
+        self.out.publish(message)
+
+
+class Commanded(Node):
+    """Plays the simulator for a controller: publishes the case and single measurements."""
+
+    def __init__(self, _parameters=None, **options):
+        super().__init__('commanded', namespace='dewing', **options)
+        self.commands = []
+        plant = first_mode()
+        identity = Identity.of('reduced', plant, plant.rest(), plant.v_squared_max, {})
+        self.case = self.create_publisher(String, 'case', LATCHED)
+        self.out = self.create_publisher(JointState, 'measurement', 10)
+        self.create_subscription(JointState, 'command', self.commands.append, 10)
+        self.case.publish(String(data=identity.to_yaml()))
+
+    def send(self, step, camber):
+        message = JointState(name=messages.MEASURED,
+                             position=[camber * CAMBER, CAMBER, 0.4, 0.0, 0.0])
+        message.header.stamp = messages.to_stamp(step * 100_000)
+        self.out.publish(message)
+
+
+@pytest.fixture
+def session():
+    with harness.reserved_domain() as domain, harness.Session(domain) as session:
+        yield session
+
+
+@pytest.fixture
+def settings(tmp_path):
+    reduced.save(tmp_path / 'model.npz', first_mode(disturbance=0.05))
+    return {'run.plant': 'reduced', 'model': str(tmp_path / 'model.npz'),
+            'save': str(tmp_path / 'state.npz')}
+
+
+@pytest.fixture
+def scripted(session, settings):
+    """Return a session with a simulator that waits for the scripted node's first command."""
+    simulator = session.add(SimulatorNode, settings | {'run.resend_period': 1.0e3})
+    script = session.add(Scripted)
+    session.spin_until(lambda: script.measurements, TIMEOUT)
+    return session, simulator, script
+
+
+def test_a_closed_loop_in_ten_lines_is_the_loop_offline(session, settings):
+    simulator = session.add(SimulatorNode, settings | {'run.duration': 0.02})
+    session.add(ControllerNode)
+    session.spin_until(lambda: simulator.exit_status is not None, TIMEOUT)
+    assert simulator.exit_status == 0 and simulator.reason.startswith('finished at 0.02 s')
+    assert simulator.lockstep.outputs.camber_mean == offline(200)['camber_mean'][-1]
+
+
+def test_spinning_ends_with_a_sentence_when_the_condition_does_not_come(session):
+    with pytest.raises(RunFailed, match=r'did not hold within 0\.3 s'):
+        session.spin_until(lambda: False, 0.3)
+
+
+@pytest.mark.parametrize('v_squared', [math.nan, math.inf, -1.0, 1251.0**2])
+def test_unusable_commands_are_counted_reported_and_not_obeyed(scripted, v_squared):
+    session, simulator, script = scripted
+    script.send(v_squared)
+    session.spin_until(lambda: simulator.lockstep.rejected == 1, TIMEOUT)
+    assert simulator.lockstep.steps == 0
+    assert 'is out of range, from 0 to 1.5625e+06 V^2' in simulator.reason
+    script.send(1.0e5)
+    session.spin_until(lambda: simulator.lockstep.steps == 1, TIMEOUT)
+    assert simulator.lockstep.v_squared == 1.0e5 and simulator.reason == 'running'
+
+
+def test_stale_and_foreign_commands_are_dropped(scripted):
+    session, simulator, script = scripted
+    script.send(1.0e5, messages.to_stamp(5))
+    session.spin_until(lambda: simulator.lockstep.stale == 1, TIMEOUT)
+    script.send(1.0e5, name='voltage')
+    session.spin_until(lambda: 'named v_squared' in simulator.reason, TIMEOUT)
+    assert simulator.lockstep.rejected == 1 and simulator.lockstep.steps == 0
+
+
+def test_a_duplicate_command_steps_once(scripted):
+    session, simulator, script = scripted
+    first = script.measurements[-1].header.stamp
+    script.send(1.0e5, first)
+    script.send(2.0e5, first)
+    session.spin_until(lambda: simulator.lockstep.stale == 1, TIMEOUT)
+    assert simulator.lockstep.steps == 1 and simulator.lockstep.v_squared == 1.0e5
+
+
+def test_an_unanswered_measurement_is_sent_again_unchanged(session, settings):
+    session.add(SimulatorNode, settings | {'run.resend_period': 0.1})
+    script = session.add(Scripted)
+    session.spin_until(lambda: len(script.measurements) == 3, TIMEOUT)
+    assert script.measurements[0] == script.measurements[1] == script.measurements[2]
+
+
+def test_no_controller_ends_the_run_after_the_stated_wait(session, settings):
+    simulator = session.add(SimulatorNode, settings | {'run.discovery_timeout': 0.2})
+    session.spin_until(lambda: simulator.exit_status is not None, TIMEOUT)
+    assert simulator.exit_status == 1 and '0 controllers and 0 listeners' in simulator.reason
+
+
+def test_free_mode_needs_no_controller_and_takes_the_last_command(session, settings):
+    simulator = session.add(SimulatorNode, settings | {'run.mode': 'free'})
+    script = session.add(Scripted)
+    session.spin_until(lambda: simulator.lockstep.steps > 10, TIMEOUT)
+    script.send(3.0e5)
+    session.spin_until(lambda: simulator.lockstep.v_squared == 3.0e5, TIMEOUT)
+
+
+def call(session, client, request):
+    session.spin_until(client.service_is_ready, TIMEOUT)
+    future = client.call_async(request)
+    session.spin_until(future.done, TIMEOUT)
+    return future.result()
+
+
+def test_services_pause_step_reset_and_save(scripted, tmp_path):
+    session, simulator, script = scripted
+    services = {name: script.create_client(kind, f'simulator/{name}') for name, kind in (
+        ('pause', SetBool), ('step', Trigger), ('reset', Trigger), ('save', Trigger))}
+    assert call(session, services['pause'], SetBool.Request(data=True)).success
+    assert not call(session, services['step'], Trigger.Request()).success
+    script.send(1.0e5)
+    session.spin_until(lambda: simulator._pending is not None, TIMEOUT)
+    assert simulator.lockstep.steps == 0
+    assert call(session, services['step'], Trigger.Request()).message == 'at 0.000100000 s'
+    assert call(session, services['save'], Trigger.Request()).success
+    assert simulator.built.load(str(tmp_path / 'state.npz')).step == 1
+    assert call(session, services['reset'], Trigger.Request()).success
+    assert simulator.lockstep.outputs.time == 0.0
+    assert call(session, services['pause'], SetBool.Request(data=False)).success
+    session.spin_until(lambda: messages.from_stamp(script.measurements[-1].header.stamp) == 0,
+                       TIMEOUT)
+    script.send(2.0e5)
+    session.spin_until(lambda: simulator.lockstep.v_squared == 2.0e5, TIMEOUT)
+
+
+def test_a_saved_state_is_restored_with_its_time_and_command(session, settings, tmp_path):
+    plant = first_mode()
+    plant.save(tmp_path / 'before.npz', plant.step(plant.rest(), 4.0e5))
+    session.add(SimulatorNode, settings | {'restore': str(tmp_path / 'before.npz')})
+    script = session.add(Scripted)
+    session.spin_until(lambda: script.measurements, TIMEOUT)
+    seen = messages.to_measurement(script.measurements[0])
+    assert seen.time == pytest.approx(1.0e-4) and seen.v_squared == 4.0e5
+
+
+def test_physics_is_described_and_read_only_at_run_time(scripted):
+    _, simulator, _ = scripted
+    assert 'free-stream speed [m/s]' in simulator.describe_parameter('flow.speed').description
+    answer, = simulator.set_parameters([Parameter('flow.speed', value=2.0)])
+    assert not answer.successful
+
+
+def ask(session, controller, plant, step, camber):
+    """Send one measurement, return V^2 of the answer."""
+    before = len(plant.commands)
+    plant.send(step, camber)
+    session.spin_until(lambda: len(plant.commands) > before, TIMEOUT)
+    assert plant.commands[-1].header.stamp == messages.to_stamp(step * 100_000)
+    return messages.to_v_squared(plant.commands[-1])
+
+
+@pytest.fixture
+def controlled(session):
+    controller, plant = session.add(ControllerNode), session.add(Commanded)
+    session.spin_until(lambda: controller.identity is not None
+                       and plant.out.get_subscription_count() > 0, TIMEOUT)
+    return session, controller, plant
+
+
+def test_the_controller_is_idempotent_and_starts_anew_with_time(controlled):
+    session, controller, plant = controlled
+    first = [ask(session, controller, plant, step, 0.999) for step in range(5)]
+    assert ask(session, controller, plant, 4, 0.999) == first[-1]
+    assert first[-1] > first[1] > 0.0
+    assert [ask(session, controller, plant, step, 0.999) for step in range(5)] == first
+
+
+def test_gains_change_live_and_bad_ones_are_refused_with_the_reason(session):
+    controller = session.add(ControllerNode, {'pid.kp': 1.0})
+    assert controller.settings.pid.kp == 1.0
+    answer, = controller.set_parameters([Parameter('pid.kp', value=2.0)])
+    assert answer.successful and controller.settings.pid.kp == 2.0
+    answer, = controller.set_parameters([Parameter('pid.kp', value=-2.0)])
+    assert not answer.successful and controller.settings.pid.kp == 2.0
