@@ -6,10 +6,11 @@ colcon puts the console scripts into ``lib/dewing`` (setup.cfg); pip puts them i
 ``ros2 run`` does not look, so the wrappers in ``scripts`` are installed to ``lib/dewing`` as data.
 """
 
-from glob import glob
+from pathlib import Path
 
 from setuptools import find_packages, setup
 
+SOURCE = Path(__file__).resolve().parent        # colcon may run a link to this file
 EXECUTABLES = ('simulator', 'controller', 'recorder')
 ROS_WHEELS = ('; sys_platform == "linux" and platform_machine == "x86_64"'
               ' and python_version < "3.14"')
@@ -18,7 +19,7 @@ setup(
     name='dewing',
     version='0.1.0',
     description='Membrane wings of dielectric elastomer in viscous flow, and their control',
-    long_description=open('README.md', encoding='utf-8').read(),
+    long_description=(SOURCE / 'README.md').read_text(encoding='utf-8'),
     long_description_content_type='text/markdown',
     author='The dewing authors',
     maintainer='The dewing authors',
@@ -30,7 +31,8 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', ['resource/dewing']),
         ('share/dewing', ['package.xml']),
-        ('share/dewing/config', sorted(glob('config/*.yaml'))),
+        ('share/dewing/config', [
+            f'config/{path.name}' for path in sorted(SOURCE.glob('config/*.yaml'))]),
         ('lib/dewing', [f'scripts/{name}' for name in EXECUTABLES]),
     ],
     install_requires=[
