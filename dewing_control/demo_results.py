@@ -82,8 +82,9 @@ def metrics(runs: Mapping[str, Run], case: Case, limit: float, duration: float,
             ) -> dict[str, Any]:
     """Return the metrics of open and closed loop; ``seconds`` is the caller's to add.
 
-    ``limit`` is the controller's largest voltage. Camber is relative to the undisturbed passive camber; ``steps_lost`` counts measurements
-    missing from the bags and commands that answered another step than the one in progress.
+    ``limit`` is the controller's largest voltage. Camber is relative to the undisturbed passive
+    camber; ``steps_lost`` counts measurements missing from the bags and commands that answered
+    another step than the one in progress.
     """
     closed = runs['closed_loop']
     result = {name: loop_metrics(run, case.disturbance.frequency) for name, run in runs.items()}
