@@ -16,6 +16,7 @@ import numpy as np
 from dewing_sim.errors import NotConverged
 from dewing_sim.fluid.base import Fluid, Prediction, Wall
 from dewing_sim.structure import dynamics
+from dewing_sim.structure.band import LowRank
 from dewing_sim.structure.dynamics import Motion, Operator, Structure
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
@@ -45,11 +46,12 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     position = motion.predict(dt)
     velocity = motion.rate(position, dt)
     for iteration in range(1, passes + 1):
-        prediction = fluid.predict(flow, wall_of(fluid.columns, position, velocity))
-        load = PressureLoad(fluid, prediction, wall_pressure)
+        prediction = fluid.predict(flow, wall_of(fluid.columns, structure.surface(position),
+                                                 structure.surface(velocity)))
+        load = PressureLoad(fluid, structure, prediction, wall_pressure)
         moved = dynamics.advance(structure, motion, dt, v_squared, load, operator, damping,
                                  guess=position)
-        residual = shape_change(moved.position, position)
+        residual = shape_change(structure.surface(moved.position), structure.surface(position))
         position, velocity = moved.position, moved.velocity
         if residual <= tolerance:
             return Coupled(fluid.correct(prediction, load.wall_velocity(position, velocity)),
@@ -75,27 +77,36 @@ class PressureLoad:
     """Nodal forces of the predicted flow, affine in the nodal velocities."""
 
     fluid: Fluid
+    structure: Structure
     prediction: Prediction
     wall_pressure: float
 
     def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (n + 1, 2) of the pressure jump at these velocities."""
+        """Return the nodal forces (nodes, 2) of the pressure jump at these velocities."""
         change = self.wall_velocity(position, velocity) - self.prediction.wall.velocity
         jump = self.prediction.jump - self.fluid.resistance @ change
-        return nodal_force(self.fluid.columns, position, jump + self.wall_pressure)
+        line = self.structure.surface(position)
+        return self.structure.spread(
+            nodal_force(self.fluid.columns, line, jump + self.wall_pressure))
 
     def wall_velocity(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return the column velocities (columns,)."""
-        return column_velocity(self.fluid.columns, position, velocity)
+        return column_velocity(self.fluid.columns, self.structure.surface(position),
+                               self.structure.surface(velocity))
 
 
-def nodal_resistance(fluid: Fluid, structure: Structure) -> np.ndarray:
-    """Return -d force / d velocity (m, m) on the free degrees of freedom at rest."""
+def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
+    """Return -d force / d velocity (m, m) on the free degrees of freedom at rest.
+
+    Its rank is the number of flow columns.
+    """
     position = structure.rest_position
-    unit = np.eye(position.size)[structure.free].reshape(-1, *position.shape)
-    columns = np.array([column_velocity(fluid.columns, position, motion) for motion in unit])
-    weight = np.diff(fluid.columns)[:, None] * fluid.resistance
-    return columns @ weight @ columns.T
+    line = structure.surface(position)
+    unit = np.eye(line.size).reshape(-1, *line.shape)
+    columns = np.array([column_velocity(fluid.columns, line, motion) for motion in unit])
+    basis = np.array([structure.spread(column.reshape(line.shape)).ravel()[structure.free]
+                      for column in columns.T])
+    return LowRank(basis, np.diff(fluid.columns)[:, None] * fluid.resistance)
 
 
 @numba.njit(cache=True)

@@ -73,7 +73,7 @@ def start(wing: Wing) -> State:
 def first_frequency(wing: Wing) -> float:
     """Return the first angular frequency in vacuo, pi sqrt(T/m) / c, in U/c."""
     membrane = wing.membrane
-    tension = membrane.tension(membrane.rest_position, wing.case.actuation.voltage**2)[0]
+    tension = membrane.rest_tension(wing.case.actuation.voltage**2)
     return np.pi * float(np.sqrt(tension / membrane.mass.sum()))
 
 

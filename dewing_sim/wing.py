@@ -105,7 +105,7 @@ class Wing:
         """Return the outputs of ``state`` in SI units."""
         chord = self.scales.length
         loads = self.fluid.loads(state.flow)
-        x, y = state.motion.position.T
+        x, y = self.membrane.surface(state.motion.position).T
         peak, peak_x = _peak(x, y)
         tension = self.membrane.tension(state.motion.position, state.v_squared)
         centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
@@ -122,7 +122,7 @@ class Wing:
     @property
     def reference_deflection(self) -> float:
         """y_ref = q c^2 / (8 T0) in m: the deflection of a string under a uniform pressure q."""
-        tension = self.membrane.tension(self.membrane.rest_position, 0.0)[0] * self.scales.tension
+        tension = self.membrane.rest_tension(0.0) * self.scales.tension
         return self.case.flow.dynamic_pressure * self.scales.length**2 / (8.0 * tension)
 
 

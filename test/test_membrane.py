@@ -10,8 +10,9 @@ from scipy.optimize import brentq
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged, Slack
 from dewing_sim.scales import Scales
+from dewing_sim.structure.band import full
 from dewing_sim.structure.material import diagonal
-from dewing_sim.structure.membrane import Membrane, dense
+from dewing_sim.structure.membrane import Membrane
 
 SECTION = parameters.load('paper').membrane
 PAPER = Membrane.from_parameters(SECTION)
@@ -119,15 +120,15 @@ def test_tangent_is_the_derivative_of_the_force(pressure):
         net = membrane.internal_force(p, 3.0e5) - membrane.pressure_force(p, pressure)
         return net.ravel()[membrane.free]
     expected = free_gradient(force, membrane, position, 1e-8)
-    computed = dense(membrane.tangent(position, 3.0e5, pressure))
+    computed = full(membrane.tangent(position, 3.0e5, pressure))
     assert computed == pytest.approx(expected, abs=1e-7 * np.abs(expected).max())
 
 
-def test_dense_tangent_is_the_band_and_symmetric():
+def test_tangent_is_a_symmetric_band():
     membrane = elements(SECTION, 8)
     position = bent(membrane)
-    matrix = membrane.dense_tangent(position, 0.0)
     band = membrane.tangent(position, 0.0)
+    matrix = full(band)
     assert band.shape == (7, 14)
     for offset in range(-3, 4):
         expected = np.diagonal(matrix, offset)
@@ -202,7 +203,7 @@ def test_pressure_keeps_the_membrane_taut_beyond_the_flat_limit():
 def test_string_frequencies_in_vacuo():
     tension = PAPER.sheet.respond([1.5], 0.0).tension[0]
     mass = PAPER.mass[1:-1]
-    transverse = PAPER.dense_tangent(PAPER.rest_position, 0.0)[1::2, 1::2]
+    transverse = full(PAPER.tangent(PAPER.rest_position, 0.0))[1::2, 1::2]
     squares = eigh(transverse, np.diag(mass), eigvals_only=True)
     n = np.arange(1, mass.size + 1)
     sine = np.sin(0.5 * np.pi * n / PAPER.elements)

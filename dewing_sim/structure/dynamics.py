@@ -15,9 +15,9 @@ from typing import Callable, Protocol
 
 import numba
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
 
 from dewing_sim.errors import Diverged, NotConverged
+from dewing_sim.structure.band import Inverse, LowRank
 
 ITERATIONS = 30
 SHRINKAGE = 4.0     # a chord correction that shrinks by less is replaced by Newton's
@@ -36,14 +36,20 @@ class Structure(Protocol):
         """Length to which corrections are compared."""
 
     @property
-    def free(self) -> slice:
+    def free(self) -> slice | np.ndarray:
         """Entries of a raveled nodal array that may move: m degrees of freedom."""
 
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the nodal gradient of the potential energy."""
 
-    def dense_tangent(self, position: np.ndarray, v_squared: float) -> np.ndarray:
-        """Return its derivative (m, m) on the free degrees of freedom."""
+    def tangent(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return its derivative, a symmetric band (2 w + 1, m) on the free degrees of freedom."""
+
+    def surface(self, nodal: np.ndarray) -> np.ndarray:
+        """Return what the flow sees of nodal positions or velocities, (n + 1, 2), linear."""
+
+    def spread(self, force: np.ndarray) -> np.ndarray:
+        """Return the nodal forces of forces (n + 1, 2) on the surface, its transpose."""
 
     def require_taut(self, position: np.ndarray, v_squared: float) -> None:
         """Raise `Slack` if the structure cannot carry its state."""
@@ -77,15 +83,14 @@ class Motion:
 class Operator:
     """Inverse of the iteration matrix at a reference state, made once and used in every step.
 
-    ``resistance`` (m, m) is -d(load)/d(velocity); ``inverse`` (m, m) is transposed, as
-    `_multiply` reads it.
+    ``resistance`` (m, m) is -d(load)/d(velocity).
     """
 
-    resistance: np.ndarray
-    inverse: np.ndarray
+    resistance: LowRank
+    inverse: Inverse
 
     @classmethod
-    def of(cls, structure: Structure, dt: float, resistance: np.ndarray | None = None,
+    def of(cls, structure: Structure, dt: float, resistance: LowRank | None = None,
            damping: float = 0.0, position: np.ndarray | None = None, v_squared: float = 0.0,
            ) -> 'Operator':
         """Return the operator about ``position``, by default the structure's rest state.
@@ -94,36 +99,18 @@ class Operator:
         motion, such as the trimmed one, saves iterations.
         """
         position = structure.rest_position if position is None else position
-        m = structure.rest_position.ravel()[structure.free].size
-        resistance = np.zeros((m, m)) if resistance is None else np.array(resistance, dtype=float)
-        matrix = _iteration_matrix(structure, position, v_squared, dt, resistance, damping)
-        return cls(resistance, np.ascontiguousarray(np.linalg.inv(matrix).T))
+        resistance = resistance or LowRank.zero(position.ravel()[structure.free].size)
+        return cls(resistance, _inverse(structure, position, v_squared, dt, resistance, damping))
 
 
-def _iteration_matrix(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
-                      resistance: np.ndarray, damping: float) -> np.ndarray:
-    """Return kappa^2 M + kappa (R + damping M) + K(position)."""
+def _inverse(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
+             resistance: LowRank, damping: float) -> Inverse:
+    """Return the inverse of kappa^2 M + kappa (R + damping M) + K(position)."""
     kappa = 1.5 / dt
-    mass = np.repeat(structure.mass, 2)[structure.free]
-    matrix = structure.dense_tangent(position, v_squared) + kappa * resistance
-    matrix[np.diag_indices_from(matrix)] += kappa * (kappa + damping) * mass
-    return matrix
-
-
-@numba.njit(cache=True)
-def _multiply(transposed, vector):
-    """Return ``transposed.T @ vector``, with a summation order that no BLAS thread changes."""
-    m = vector.size
-    result = np.zeros(m)
-    for column in range(0, m - 1, 2):
-        a, b = vector[column], vector[column + 1]
-        first, second = transposed[column], transposed[column + 1]
-        for row in range(m):
-            result[row] += a * first[row] + b * second[row]
-    if m % 2:
-        for row in range(m):
-            result[row] += vector[m - 1] * transposed[m - 1, row]
-    return result
+    band = structure.tangent(position, v_squared)
+    band[len(band) // 2] += kappa * (kappa + damping) * np.repeat(structure.mass, 2)[
+        structure.free]
+    return Inverse.of(band, resistance, kappa)
 
 
 @numba.njit(cache=True)
@@ -155,8 +142,7 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
     ``tolerance`` chords. Raises `Slack`, `Diverged` or `NotConverged`.
     """
     position = np.array(motion.predict(dt) if guess is None else guess)
-    unknown = position.reshape(-1)[structure.free]
-    solve = _chord_solve(operator)
+    solve = operator.inverse
     previous = np.inf
     for iteration in range(ITERATIONS):
         velocity = motion.rate(position, dt)
@@ -166,14 +152,13 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
         correction = solve(residual)
         size = np.abs(correction).max()
         if size > previous / SHRINKAGE and size > tolerance * structure.chord:
-            solve = _newton_solve(_iteration_matrix(
-                structure, position, v_squared, dt, operator.resistance, damping))
+            solve = _inverse(structure, position, v_squared, dt, operator.resistance, damping)
             correction = solve(residual)
             size = np.abs(correction).max()
         if not np.isfinite(size):
             raise Diverged(f'structure: non-finite residual or correction in iteration '
                            f'{iteration}; check the load or reduce the time step', motion)
-        unknown -= correction
+        position.reshape(-1)[structure.free] -= correction
         if size <= tolerance * structure.chord:
             structure.require_taut(position, v_squared)
             velocity = motion.rate(position, dt)
@@ -184,11 +169,3 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
                        f'residual {np.abs(residual).max():.3g} after {ITERATIONS} iterations '
                        f'(tolerance {tolerance:.3g}); reduce the time step', motion)
 
-
-def _chord_solve(operator: Operator):
-    return lambda residual: _multiply(operator.inverse, residual)
-
-
-def _newton_solve(matrix: np.ndarray):
-    factors = lu_factor(matrix, overwrite_a=True, check_finite=False)
-    return lambda residual: lu_solve(factors, residual, check_finite=False)

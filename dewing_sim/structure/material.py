@@ -169,7 +169,7 @@ class Elastomer:
         other = [part[..., None, None, :, :] for part in (motion.f, motion.c, motion.y)]
         identity = np.einsum('ik,jl->ijkl', np.eye(3), np.eye(3))
         return modulus(self._slopes(motion, 4), *first, *other, identity,
-                               motion.c_both, motion.y_both)
+                       motion.c_both, motion.y_both)
 
     def kirchhoff_stress(self, gradient, field=(0.0, 0.0, 0.0)) -> np.ndarray:
         """Return tau = P F^T, (..., 3, 3)."""

@@ -13,16 +13,16 @@ from functools import cached_property
 
 import numba
 import numpy as np
-from scipy.linalg import solve_banded
 
 from dewing_sim import parameters
-from dewing_sim.errors import BadInput, Diverged, NotConverged, RunFailed, Slack
+from dewing_sim.errors import BadInput, Slack
 from dewing_sim.scales import Scales
+from dewing_sim.structure import statics
+from dewing_sim.structure.follower import pressure_force, subtract_stiffness
 from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer
 from dewing_sim.structure.sheet import Sheet
 
 SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
-BANDWIDTH = 3       # of the free degrees of freedom x1, y1, x2, y2, ... on either side
 
 
 @numba.njit(cache=True)
@@ -53,45 +53,29 @@ def _assemble_force(edges, tension):
 
 
 @numba.njit(cache=True)
-def _assemble_tangent(edges, tension, stiffness, pressure):
-    """Return the banded derivative of internal minus follower-pressure force, (7, 2(n-1)).
+def _assemble_tangent(edges, tension, stiffness):
+    """Return the banded derivative of the internal force, (7, 2(n-1)).
 
-    ``stiffness`` is dT / d length. Both nodes of an element get p/2 (-dy, dx).
+    ``stiffness`` is dT / d length.
     """
     n = tension.size
     band = np.zeros((7, 2 * (n - 1)))
-    block = np.empty((2, 2))
     for k in range(n):
         ex, ey = edges[0, k], edges[1, k]
         across = tension[k] / edges[2, k]
         along = stiffness[k] - across
-        block[0, 0] = along * ex * ex + across
-        block[1, 1] = along * ey * ey + across
-        block[0, 1] = block[1, 0] = along * ex * ey
-        half = 0.5 * pressure[k]
+        xx, xy, yy = along * ex * ex + across, along * ex * ey, along * ey * ey + across
         for a in range(2):
             for b in range(2):
                 row, column = 2 * (k - 1 + a), 2 * (k - 1 + b)
                 if row < 0 or column < 0 or row >= band.shape[1] or column >= band.shape[1]:
                     continue
                 sign = 1.0 if a == b else -1.0
-                turn = half if b == 0 else -half
-                band[3 + row - column, column] += sign * block[0, 0]
-                band[4 + row - column, column] += sign * block[1, 0] + turn
-                band[2 + row - column, column + 1] += sign * block[0, 1] - turn
-                band[3 + row - column, column + 1] += sign * block[1, 1]
+                band[3 + row - column, column] += sign * xx
+                band[4 + row - column, column] += sign * xy
+                band[2 + row - column, column + 1] += sign * xy
+                band[3 + row - column, column + 1] += sign * yy
     return band
-
-
-@numba.njit(cache=True)
-def dense(band):
-    """Return the full matrix of a (7, m) band in the layout of `scipy.linalg.solve_banded`."""
-    m = band.shape[1]
-    matrix = np.zeros((m, m))
-    for column in range(m):
-        for row in range(max(0, column - 3), min(m, column + 4)):
-            matrix[row, column] = band[3 + row - column, column]
-    return matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,22 +163,35 @@ class Membrane:
         """
         edges = _edges(position)
         response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
-        return _assemble_tangent(edges, response.tension,
-                                 response.stiffness * self.stretch_per_length,
-                                 np.full(self.elements, pressure, dtype=float))
+        band = _assemble_tangent(edges, response.tension,
+                                 response.stiffness * self.stretch_per_length)
+        if np.any(pressure):
+            subtract_stiffness(band, np.full(self.elements, pressure, dtype=float),
+                               self._equations, np.ones((self.elements + 1, 1)))
+        return band
 
-    def dense_tangent(self, position: np.ndarray, v_squared: float) -> np.ndarray:
-        """Return `tangent` as a full matrix (2(n-1), 2(n-1))."""
-        return dense(self.tangent(position, v_squared))
+    @cached_property
+    def _equations(self) -> np.ndarray:
+        """Number of each coordinate among the free ones, -1 at the pins, (n+1, 1, 2)."""
+        numbers = np.full(2 * self.elements + 2, -1)
+        numbers[self.free] = np.arange(2 * self.elements - 2)
+        return numbers.reshape(-1, 1, 2)
+
+    def surface(self, nodal: np.ndarray) -> np.ndarray:
+        """Return what the flow sees of nodal positions or velocities: all, (n+1, 2)."""
+        return nodal
+
+    def spread(self, force: np.ndarray) -> np.ndarray:
+        """Return the nodal forces of forces (n+1, 2) on the surface, its transpose."""
+        return force
+
+    def rest_tension(self, v_squared: float) -> float:
+        """Return the tension of the flat unloaded membrane."""
+        return float(self.sheet.respond([self.prestretch], v_squared).tension[0])
 
     def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
         """Return the nodal forces (n+1, 2) of a pressure jump, scalar or (n,), pushing to +y."""
-        step = np.diff(position, axis=0)
-        half = 0.5 * np.reshape(pressure, (-1, 1)) * np.stack([-step[:, 1], step[:, 0]], axis=1)
-        force = np.zeros_like(position)
-        force[:-1] += half
-        force[1:] += half
-        return force
+        return pressure_force(position, pressure)
 
     def require_taut(self, position: np.ndarray, v_squared: float) -> None:
         """Raise `Slack` with element, tension and voltages if any tension is not positive."""
@@ -210,53 +207,6 @@ class Membrane:
     def equilibrium(self, pressure, v_squared: float, follower: bool = True) -> np.ndarray:
         """Return the static position (n+1, 2) under a pressure jump, scalar or (n,).
 
-        Newton from the flat state, first in pressure, then in V^2, in as few load steps as
-        converge. A ``follower`` pressure stays normal to the membrane, otherwise to the chord.
-        Raises `Slack`, `Diverged` or `NotConverged` at the load that could not be passed.
+        Raises `Slack`, `Diverged` or `NotConverged`, see `statics.equilibrium`.
         """
-        pressure = np.asarray(pressure, dtype=float)
-        passive = _march(lambda position, share: self._newton(
-            position, share * pressure, 0.0, follower), self.rest_position)
-        return _march(lambda position, share: self._newton(
-            position, pressure, share * v_squared, follower), passive)
-
-    def _newton(self, position: np.ndarray, pressure, v_squared: float, follower: bool,
-                ) -> np.ndarray:
-        force = self.pressure_force(self.rest_position, pressure)
-        for _ in range(40):
-            if follower:
-                force = self.pressure_force(position, pressure)
-            residual = (self.internal_force(position, v_squared) - force).ravel()[self.free]
-            band = self.tangent(position, v_squared, pressure if follower else 0.0)
-            correction = _solve(band, residual)
-            position = position.copy()
-            position.reshape(-1)[self.free] -= correction
-            if np.abs(correction).max() <= 1.0e-12 * self.chord:
-                self.require_taut(position, v_squared)
-                return position
-        raise NotConverged(f'static equilibrium at {math.sqrt(v_squared):.6g} V: correction '
-                           f'{np.abs(correction).max():.3g} after 40 iterations; '
-                           'reduce pressure or voltage')
-
-
-def _solve(band: np.ndarray, residual: np.ndarray) -> np.ndarray:
-    try:
-        return solve_banded((BANDWIDTH, BANDWIDTH), band, residual)
-    except (np.linalg.LinAlgError, ValueError):
-        raise Diverged('the stiffness is singular or not finite; '
-                       'the membrane carries no tension') from None
-
-
-def _march(solve, position: np.ndarray) -> np.ndarray:
-    """Raise the share of a load from 0 to 1, halving the step on failure, doubling after."""
-    share, step = 0.0, 1.0
-    while share < 1.0:
-        try:
-            position = solve(position, min(1.0, share + step))
-        except RunFailed:
-            step *= 0.5
-            if step < 1.0e-4:
-                raise
-        else:
-            share, step = share + step, 2.0 * step
-    return position
+        return statics.equilibrium(self, pressure, v_squared, follower)

@@ -1,0 +1,98 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Static equilibrium under pressure and voltage by Newton iterations along load steps."""
+
+import math
+from typing import Callable, Protocol
+
+import numpy as np
+from scipy.linalg import solve_banded
+
+from dewing_sim.errors import Diverged, NotConverged, RunFailed
+
+TOLERANCE = 1.0e-12     # chords
+ITERATIONS = 40
+SMALLEST_SHARE = 1.0e-4
+
+
+class Structure(Protocol):
+    """What statics needs of a structure; nodal arrays are (nodes, 2), forces per span."""
+
+    rest_position: np.ndarray
+    chord: float
+    free: np.ndarray
+
+    def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return the nodal gradient of the potential energy."""
+
+    def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
+        """Return the nodal forces of a pressure jump."""
+
+    def tangent(self, position: np.ndarray, v_squared: float, pressure) -> np.ndarray:
+        """Return d(internal - pressure force)/d(position) as a band (2 w + 1, m)."""
+
+    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
+        """Raise `Slack` if the structure cannot carry its state."""
+
+
+def equilibrium(structure: Structure, pressure, v_squared: float, follower: bool = True,
+                ) -> np.ndarray:
+    """Return the static position (nodes, 2) under a pressure jump, scalar or (n,).
+
+    Newton from the rest state, first in pressure, then in V^2, in as few load steps as converge.
+    A ``follower`` pressure stays normal to the structure, otherwise to its rest state. Raises
+    `Slack`, `Diverged` or `NotConverged` at the load that could not be passed.
+    """
+    pressure = np.asarray(pressure, dtype=float)
+
+    def solve(position, load, square):
+        position = newton(structure, position, square, load, follower)
+        structure.require_taut(position, square)
+        return position
+
+    passive = march(lambda position, share: solve(position, share * pressure, 0.0),
+                    structure.rest_position)
+    return march(lambda position, share: solve(position, pressure, share * v_squared), passive)
+
+
+def newton(structure: Structure, position: np.ndarray, v_squared: float, pressure=0.0,
+           follower: bool = True, held: float | np.ndarray = 0.0) -> np.ndarray:
+    """Return the position in equilibrium with pressure and dead nodal forces ``held``."""
+    force = structure.pressure_force(structure.rest_position, pressure)
+    for _ in range(ITERATIONS):
+        if follower:
+            force = structure.pressure_force(position, pressure)
+        imbalance = structure.internal_force(position, v_squared) - force - held
+        band = structure.tangent(position, v_squared, pressure if follower else 0.0)
+        correction = _solve(band, imbalance.ravel()[structure.free])
+        position = position.copy()
+        position.reshape(-1)[structure.free] -= correction
+        if np.abs(correction).max() <= TOLERANCE * structure.chord:
+            return position
+    raise NotConverged(f'static equilibrium at {math.sqrt(v_squared):.6g} V: correction '
+                       f'{np.abs(correction).max():.3g} after {ITERATIONS} iterations; '
+                       'reduce pressure or voltage')
+
+
+def _solve(band: np.ndarray, imbalance: np.ndarray) -> np.ndarray:
+    width = len(band) // 2
+    try:
+        return solve_banded((width, width), band, imbalance)
+    except (np.linalg.LinAlgError, ValueError):
+        raise Diverged('the stiffness is singular or not finite; '
+                       'the membrane carries no tension') from None
+
+
+def march(solve: Callable[[np.ndarray, float], np.ndarray], position: np.ndarray) -> np.ndarray:
+    """Raise the share of a load from 0 to 1, halving the step on failure, doubling after."""
+    share, step = 0.0, 1.0
+    while share < 1.0:
+        try:
+            position = solve(position, min(1.0, share + step))
+        except RunFailed:
+            step *= 0.5
+            if step < SMALLEST_SHARE:
+                raise
+        else:
+            share, step = share + step, 2.0 * step
+    return position
