@@ -1,0 +1,114 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""All studies, and how they are run: every computation once, spread over processes."""
+
+import multiprocessing
+import os
+import time
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Any, Callable, Sequence
+
+from dewing_sim.verification import (
+    added_mass,
+    camber,
+    coupled,
+    divergence,
+    impulsive,
+    moving_camber,
+    resolution,
+    rigid_plate,
+    still_air,
+    vortex,
+)
+from dewing_sim.verification.study import Check, Run, Study
+
+STUDIES = tuple(module.STUDY for module in (
+    rigid_plate, resolution, vortex, impulsive, added_mass, moving_camber, camber, still_air,
+    divergence, coupled))
+SINGLE_THREAD = ('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS',
+                 'NUMBA_NUM_THREADS')
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Checks and, by engine and name, the results behind them, study by study."""
+
+    studies: tuple[Study, ...]
+    checks: dict[str, list[Check]]              # by name of the study
+    results: dict[str, dict[str, dict[str, Any]]]   # by study, engine, run
+    quick: bool
+    seconds: float
+
+    @property
+    def all_checks(self) -> list[Check]:
+        """Every check in order."""
+        return [check for study in self.studies for check in self.checks[study.name]]
+
+    @property
+    def missed(self) -> list[Check]:
+        """Checks outside their gates."""
+        return [check for check in self.all_checks if not check.passed]
+
+
+def verify(engines: Sequence[str], quick: bool = False, jobs: int | None = None,
+           progress: Callable | None = None) -> Verification:
+    """Run every study on every engine; ``progress(done, total)`` counts computations.
+
+    ``jobs`` processes work at once, by default as many as there are idle cores. A run that fails
+    raises its `RunFailed`.
+    """
+    started = time.perf_counter()
+    plan = {(study.name, engine): study.runs(engine, quick)
+            for study in STUDIES for engine in engines}
+    done = execute({run for runs in plan.values() for run in runs.values()}, jobs, progress)
+    checks: dict[str, list[Check]] = {}
+    results: dict[str, dict[str, dict[str, Any]]] = {}
+    for study in STUDIES:
+        found, results[study.name] = [], {}
+        for engine in engines:
+            if runs := plan[study.name, engine]:
+                answers = {name: done[run] for name, run in runs.items()}
+                results[study.name][engine] = answers
+                found += study.checks(engine, answers)
+        checks[study.name] = found + between_engines(found)
+    return Verification(STUDIES, checks, results, quick, time.perf_counter() - started)
+
+
+def between_engines(checks: list[Check]) -> list[Check]:
+    """Return a check of each engine's value against the first engine's, where both exist."""
+    first: dict[str, Check] = {}
+    pairs = []
+    for check in checks:
+        other = first.setdefault(check.name, check)
+        if other.engine != check.engine and check.scale is None and other.value != 0.0:
+            pairs.append(Check(check.name, f'{check.engine} - {other.engine}', check.value,
+                               float(other.value), other.engine))
+    return pairs
+
+
+def execute(runs: set[Run], jobs: int | None = None, progress: Callable | None = None,
+            ) -> dict[Run, Any]:
+    """Return the result of each run; the most expensive ones start first."""
+    ordered = sorted(runs, key=lambda run: (-run.cost, repr(run)))
+    results: dict[Run, Any] = {}
+    for name in SINGLE_THREAD:      # read when a new process loads its libraries
+        os.environ.setdefault(name, '1')
+    with ProcessPoolExecutor(jobs or idle_cores(),
+                             multiprocessing.get_context('spawn')) as pool:
+        futures = {pool.submit(run): run for run in ordered}
+        try:
+            for future in as_completed(futures):
+                results[futures[future]] = future.result()
+                if progress:
+                    progress(len(results), len(ordered))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return results
+
+
+def idle_cores() -> int:
+    """Return the number of cores that have nothing to do at present, at least one."""
+    cores = os.cpu_count() or 1
+    return max(1, min(cores, round(cores + 0.5 - os.getloadavg()[0])))
