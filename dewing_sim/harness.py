@@ -21,6 +21,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from time import monotonic
 from typing import Any
 
@@ -167,12 +168,15 @@ def reserved_domain() -> Iterator[int]:
 def environment(domain: int, log_folder: str) -> dict[str, str]:
     """Return the environment for a child process: local discovery, one thread, own log folder.
 
-    Settings of the parent that would connect the child to other machines are left out.
+    The child imports the same dewing as this process. Settings that would connect it to other
+    machines are left out.
     """
     foreign = ('ROS_LOCALHOST_ONLY', 'ROS_DISCOVERY_SERVER', 'ROS_STATIC_PEERS',
                'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
     kept = {name: value for name, value in os.environ.items() if name not in foreign}
+    path = filter(None, [str(Path(__file__).parents[1]), os.environ.get('PYTHONPATH')])
     return kept | {
+        'PYTHONPATH': os.pathsep.join(path),
         'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
         'ROS_LOG_DIR': log_folder, 'OPENBLAS_NUM_THREADS': '1', 'NUMBA_NUM_THREADS': '1',
         'AMENT_PREFIX_PATH': os.environ.get('AMENT_PREFIX_PATH') or sys.prefix}

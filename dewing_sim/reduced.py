@@ -53,7 +53,12 @@ class Reduced:
     extra: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self):
-        """Raise `BadInput` for shapes that do not fit or values that are not finite."""
+        """Raise `BadInput` for shapes that do not fit or values that are not finite.
+
+        The matrices are laid out by rows, as from a file: BLAS rounds by layout.
+        """
+        for name in ('A', 'B', 'C'):
+            object.__setattr__(self, name, np.ascontiguousarray(getattr(self, name), float))
         states, rows = self.B.size, len(self.output_names)
         shapes = {'A': (states, states), 'B': (states,), 'C': (rows, states),
                   'operating_outputs': (rows,)}

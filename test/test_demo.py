@@ -59,6 +59,7 @@ def start(folder, *options):
          *options], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.mark.slow
 def test_the_demo_leaves_bags_figure_and_metrics(tmp_path):
     process = start(tmp_path, '--duration', '0.02', '--json', str(tmp_path / 'copy.json'))
     said, complaint = process.communicate(timeout=300)
@@ -75,6 +76,7 @@ def test_the_demo_leaves_bags_figure_and_metrics(tmp_path):
     assert 'exists; --force writes over it' in again.communicate()[1]
 
 
+@pytest.mark.slow
 def test_an_interrupted_demo_keeps_what_it_recorded(tmp_path):
     process = start(tmp_path, '--duration', '5.0')
     recording = tmp_path / 'demo' / 'open_loop.mcap'
