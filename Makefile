@@ -22,7 +22,7 @@ venv:
 	@python="$$(sh scripts/find_python)" && "$$python" scripts/environment.py '$(VENV)'
 
 demo: venv
-	@$(BIN)/dewing demo $(DEMO_OPTIONS)
+	@$(BIN)/dewing demo --force $(DEMO_OPTIONS)
 
 lint: venv
 	@$(BIN)/ruff check .
