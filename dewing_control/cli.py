@@ -7,6 +7,7 @@ Exit status: 0 done, 1 the run or a gate failed, 2 bad input, 130 interrupted.
 
 import argparse
 import importlib
+import os
 import pkgutil
 import sys
 import warnings
@@ -16,6 +17,8 @@ from typing import Sequence
 from dewing_control import commands
 from dewing_sim.errors import BadInput, DewingError
 
+# The small systems of a step gain nothing from threads, and one thread rounds as the nodes do.
+THREADS = ('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS', 'NUMBA_NUM_THREADS')
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -54,6 +57,8 @@ def build_parser() -> Parser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``dewing`` with ``argv`` (default: the command line); return the exit status."""
+    for name in THREADS:
+        os.environ.setdefault(name, '1')
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
         try:

@@ -4,6 +4,8 @@
 
 import numpy as np
 
+STEADY = 1.0e-4     # a relative range below which the lines are those of rounding and iteration
+
 
 def power_spectrum(signal: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Return frequencies (Hz) and one-sided power of a uniformly sampled ``signal`` (n,).
@@ -18,13 +20,13 @@ def power_spectrum(signal: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarra
 def peaks(signal: np.ndarray, dt: float, most: int = 5, floor: float = 1.0e-3) -> list[float]:
     """Return the frequencies (Hz) of the strongest lines of ``signal``, strongest first.
 
-    Lines weaker than ``floor`` times the strongest are left out, as is a signal that is constant
-    to rounding or shorter than 8 samples. A parabola through the logarithm of three neighbouring
-    powers places a line between the bins.
+    Lines weaker than ``floor`` times the strongest are left out, as is a signal that is shorter
+    than 8 samples or whose range is below `STEADY` of its largest value. A parabola through the
+    logarithm of three neighbouring powers places a line between the bins.
     """
     from scipy.signal import find_peaks
     signal = np.asarray(signal, dtype=float)
-    if len(signal) < 8 or np.ptp(signal) <= 1.0e-9 * np.abs(signal).max():
+    if len(signal) < 8 or np.ptp(signal) <= STEADY * np.abs(signal).max():
         return []
     frequency, power = power_spectrum(signal, dt)
     found, _ = find_peaks(power, height=floor * power.max())

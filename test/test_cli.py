@@ -3,6 +3,7 @@
 """The command line: exit status, one sentence for each mistake, and the promised JSON keys."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -246,3 +247,13 @@ def test_the_module_is_the_command():
 def test_the_disturbances_are_both_readings_of_the_paper():
     assert simulate.options.DISTURBANCES['fig5']['disturbance.pressure'] == 0.015
     assert simulate.options.DISTURBANCES['printed']['disturbance.pressure'] == 0.03
+
+
+def test_a_command_runs_on_one_thread_unless_told_otherwise():
+    code = ("import os\nfrom dewing_control import cli\ncli.main(['plate'])\n"
+            "print(os.environ['OPENBLAS_NUM_THREADS'], os.environ['NUMBA_NUM_THREADS'])")
+    bare = {name: value for name, value in os.environ.items() if name not in cli.THREADS}
+    for given, threads in (({}, '1 1'), ({'NUMBA_NUM_THREADS': '2'}, '1 2')):
+        result = subprocess.run([sys.executable, '-c', code], env=bare | given,
+                                capture_output=True, text=True)
+        assert result.stdout.strip() == threads, result.stderr

@@ -35,8 +35,9 @@ def test_lines_come_strongest_first_and_weak_ones_are_left_out():
     assert peaks(signal, DT, floor=1.0e-5) == pytest.approx([26.0, 52.0, 90.0], abs=0.05)
 
 
-@pytest.mark.parametrize('signal', [np.ones(100), np.zeros(100), np.arange(5.0), np.empty(0)])
-def test_a_constant_or_very_short_signal_has_no_lines(signal):
+@pytest.mark.parametrize('signal', [
+    np.ones(100), np.zeros(100), np.arange(5.0), np.empty(0), 1.0 + 4.0e-5 * sine(26.0)])
+def test_a_steady_or_very_short_signal_has_no_lines(signal):
     assert peaks(signal, DT) == []
 
 
