@@ -32,7 +32,7 @@ test: lint
 	@$(BIN)/python -m pytest $(PYTEST_OPTIONS)
 
 bench: venv
-	@$(BIN)/python benchmarks/bench.py $(BENCH_OPTIONS)
+	@$(BIN)/dewing bench $(BENCH_OPTIONS)
 
 clean:
 	rm -rf '$(VENV)' build dist install log *.egg-info .pytest_cache .ruff_cache .hypothesis

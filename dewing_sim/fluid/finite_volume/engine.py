@@ -108,7 +108,7 @@ class FiniteVolume:
     def predict(self, state: FlowState, wall: Wall) -> Prediction:
         """Advance momentum and the forward half of the projection with the wall in place."""
         metrics = mapping.metrics(self.grid, wall)
-        u, v = self._momentum(state, metrics, wall)
+        u, v = self.momentum(state, metrics, wall)
         fx, fy = projection.fluxes(self.grid, self._g, metrics, u, v)
         outflow = projection.divergence(fx, fy, self.grid.dx, self.grid.dy)
         even_hat, odd_hat, increment = self.poisson.forward(outflow / self.theta)
@@ -155,8 +155,8 @@ class FiniteVolume:
         return Loads(jump, cl=2.0 * float(normal * cos - axial * sin),
                      cd=2.0 * float(normal * sin + axial * cos), cm=2.0 * float(moment))
 
-    def _momentum(self, state: FlowState, m: mapping.Metrics, wall: Wall,
-                  ) -> tuple[np.ndarray, np.ndarray]:
+    def momentum(self, state: FlowState, m: mapping.Metrics, wall: Wall,
+                 ) -> tuple[np.ndarray, np.ndarray]:
         """Return the velocities that satisfy momentum with the old pressure."""
         fx = 2.0 * state.fx - state.fx_before
         w = 2.0 * state.w - state.w_before
