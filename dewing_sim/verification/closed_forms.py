@@ -6,6 +6,7 @@ import numpy as np
 
 # Wagner's function at s semichords after an impulsive start (converged quadrature).
 WAGNER = {1.0: 0.60061, 2.0: 0.66929, 4.0: 0.75797, 10.0: 0.87504}
+TRIPLE_DECK = -0.375     # exponent of Re in the loss of lift at a trailing edge
 QUADRATURE = 2000
 
 
@@ -78,7 +79,7 @@ def _sail(modes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.diag(0.5 * (n * np.pi)**2), weight @ pressure.T, weight @ (4.0 * first)
 
 
-def sail_divergence(modes: int = 24) -> float:
+def sail_divergence(modes: int = 48) -> float:
     """Return the tension C_T = T / (q c) below which a flat membrane diverges, 1.7275."""
     from scipy.linalg import eigvals
     stiffness, load, _ = _sail(modes)

@@ -13,10 +13,11 @@ HEADER = ('name', 'engine', 'ours', 'reference', 'source', 'difference', 'gate',
 MISSES = '## Known misses'
 INTRODUCTION = """# Verification
 
-Written by `dewing verify --out docs --force`; `dewing verify --quick` runs a part of it in about a minute and `make test`
-runs that part. Lengths are in chords, speeds in free-stream speeds, unless a unit is given. A difference is relative to the
-reference, or absolute where it has no percent sign. A row without gate is reported, not judged. A missed gate makes the
-command exit with status 1.
+Written by `dewing verify --out docs --force`; `dewing verify --quick` runs a part of it in about
+a minute, and so does `make test`. Lengths are in chords and speeds in free-stream speeds unless a
+unit is given. A difference is relative to the reference, or absolute where it has no percent
+sign. A row without gate is reported, not judged. A missed gate makes the command exit with
+status 1.
 """
 
 

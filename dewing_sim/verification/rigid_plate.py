@@ -108,7 +108,7 @@ def draw(figure, results: dict[str, dict[str, PlateResult]]) -> None:
 STUDY = Study(
     'rigid_plate', 'Rigid flat plates at Re = 2500',
     'Along the stream the drag has a closed form. At 4 degrees the flow separates at the leading '
-    'edge, reattaches near x/c = 0.2 and is steady; at 8 degrees it sheds vortices. The references '
+    'edge, reattaches near x/c = 0.2 and is steady; at 8 degrees it sheds vortices. References '
     'are converged solutions of an independent discontinuous-Galerkin code. Power ratios are of '
     'the squared amplitudes of the harmonics of Cl.',
     runs, checks, draw)

@@ -73,10 +73,8 @@ def ringing(signals: np.ndarray, dt: float, delays: int = 12) -> np.ndarray:
 
 
 def limit(parameter: np.ndarray, values: np.ndarray) -> float:
-    """Return the value at parameter 0 of the straight line through the two smallest."""
-    first, second = np.argsort(parameter)[:2]
-    slope = (values[second] - values[first]) / (parameter[second] - parameter[first])
-    return float(values[first] - slope * parameter[first])
+    """Return the value at parameter 0 of the polynomial through all points."""
+    return float(np.polyfit(parameter, values, len(parameter) - 1)[-1])
 
 
 class Richardson(NamedTuple):

@@ -102,5 +102,5 @@ STUDY = Study(
     'still_air', 'Frequencies in still air, down to a mass ratio of 0.03',
     'The `paper` membrane is released in a stream of 0.03 m/s. Its first three frequencies follow '
     'from tension, mass and added mass. A loosely coupled scheme fails where the membrane is '
-    'lighter than the air it moves. The rest of the difference is the air\'s viscosity.',
+    "lighter than the air it moves. The rest of the difference is the air's viscosity.",
     runs, checks)
