@@ -71,7 +71,12 @@ class Membrane:
     gent_limit: float = real('-', 'Gent limit Jm of I1 - 3', 1.0, 1.0e6)
     bulk_modulus: float = real('Pa', 'K of the volumetric energy K (J-1)^2', 1.0e4, 1.0e12)
     relative_permittivity: float = real('-', 'eps_r of the elastomer', 1.0, 1.0e3)
+    element: str = choice('two-node membrane, or solid elements through the thickness',
+                          'membrane', 'solid')
     elements: int = count('elements along the chord', 4, 2000)
+    viscous_share: float = real(
+        '-', 'modulus of the relaxing branch over mu, 0: elastic', 0.0, 100.0)
+    viscous_time: float = real('s', 'relaxation time of that branch', 1.0e-6, 1.0e6)
 
 
 @dataclass(frozen=True)
@@ -94,6 +99,11 @@ class Actuation:
 
     voltage: float = real('V', 'voltage of the rest state', 0.0, 1.0e5)
     voltage_limit: float = real('V', 'largest admissible voltage', 0.0, 1.0e5)
+    breakdown_field: float = real(
+        'V/m', 'true field above which a breakdown is warned about', 1.0e5, 1.0e10)
+    amplifier_slew_rate: float = real(
+        'V/s', 'fastest change of the amplifier, 0: no limit', 0.0, 1.0e9)
+    amplifier_lag: float = real('s', 'first-order lag of the amplifier, 0: none', 0.0, 10.0)
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ class Outputs:
     camber_max: float                   # m
     camber_max_position: float          # x/c of the largest camber
     tension: float                      # N/m, chord average
+    electric_field: float = 0.0         # V/m, the largest V / h along the chord
     coupling_iterations: int = 0
     x: np.ndarray = field(default_factory=lambda: np.empty(0))
     y: np.ndarray = field(default_factory=lambda: np.empty(0))

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from dewing_sim import interface
+from dewing_sim.amplifier import Amplifier
 from dewing_sim.disturbance import wall_pressure
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
@@ -21,8 +22,8 @@ from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.plate import starting_circulation
 from dewing_sim.scales import Scales
+from dewing_sim.structure import elements
 from dewing_sim.structure.dynamics import Motion, Operator
-from dewing_sim.structure.membrane import Membrane
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,8 @@ class Wing:
         self.case = case
         self.dt = case.numerics.time_step
         self.scales = Scales.of(case.flow, case.membrane.chord)
-        self.membrane = Membrane.from_parameters(case.membrane, self.scales)
+        self.membrane = elements.make(case.membrane, self.scales)
+        self.amplifier = Amplifier.of(case.actuation)
         self.fluid = engines.make(case.numerics.engine, case.numerics.grid, self.scales.reynolds,
                                   case.flow.angle_of_attack, self.dt / self.scales.time)
         self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
@@ -64,13 +66,15 @@ class Wing:
         return trim.rest(self, progress)
 
     def step(self, state: State, v_squared: float) -> State:
-        """Return the state one ``dt`` later with ``v_squared`` (V^2) held.
+        """Return the state one ``dt`` later with ``v_squared`` (V^2) commanded and held.
 
-        Raises `BadInput` for a V^2 that is negative or not finite, `NotConverged`, `Diverged` or
-        `Slack` with the last good state.
+        The amplifier, ideal by default, makes the electrodes' V^2 of the command. Raises
+        `BadInput` for a V^2 that is negative or not finite, `NotConverged`, `Diverged` or `Slack`
+        with the last good state.
         """
         if not 0.0 <= v_squared < math.inf:
             raise BadInput(f'v_squared = {v_squared!r} V^2 is out of range: zero or more')
+        v_squared = self.amplifier.drive(state.v_squared, v_squared, self.dt)
         time = (state.step + 1) * self.dt
         pressure = 0.5 * wall_pressure(self.case.disturbance, time)     # q is rho U^2 / 2
         coupled = self.couple(state, v_squared, pressure, self._operator)
@@ -107,14 +111,15 @@ class Wing:
         loads = self.fluid.loads(state.flow)
         x, y = self.membrane.surface(state.motion.position).T
         peak, peak_x = _peak(x, y)
-        tension = self.membrane.tension(state.motion.position, state.v_squared)
+        sheet = self.membrane.respond(state.motion.position, state.v_squared)
         centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
         return Outputs(
             time=state.step * self.dt, v_squared=state.v_squared,
             cl=loads.cl, cd=loads.cd, cm=loads.cm,
             camber_mean=chord * float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x))),
             camber_max=chord * peak, camber_max_position=peak_x,
-            tension=self.scales.tension * float(tension.mean()),
+            tension=self.scales.tension * float(sheet.tension.mean()),
+            electric_field=math.sqrt(state.v_squared) / (chord * float(sheet.thickness.min())),
             coupling_iterations=state.iterations,
             x=chord * x, y=chord * y,
             pressure_jump=self.scales.pressure * np.interp(x, centres, loads.jump))

@@ -16,8 +16,6 @@ from dewing_sim.errors import BadInput
 from dewing_sim.files import check_free
 from dewing_sim.parameters import Case
 
-BREAKDOWN_FIELD = 20.0e6        # V/m, above which thin films of VHB may fail
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
@@ -90,9 +88,10 @@ def _warn_of_breakdown(voltage: float, case: Case) -> None:
     membrane = case.membrane
     field = voltage * membrane.prestretch * membrane.prestretch_lateral / (
         membrane.initial_thickness)
-    if field > BREAKDOWN_FIELD:
+    if field > case.actuation.breakdown_field:
         warnings.warn(f'{voltage:.0f} V is a field of {field / 1.0e6:.1f} MV/m in the membrane; '
-                      f'above 20 MV/m the elastomer may break down', RuntimeWarning, stacklevel=2)
+                      f'above {case.actuation.breakdown_field / 1.0e6:g} MV/m '
+                      'the elastomer may break down', RuntimeWarning, stacklevel=2)
 
 
 class Loop(NamedTuple):

@@ -18,8 +18,10 @@ import numpy as np
 
 from dewing_sim.errors import Diverged, NotConverged
 from dewing_sim.structure.band import Inverse, LowRank
+from dewing_sim.structure.statics import march
 
 ITERATIONS = 30
+SMALLEST_SHARE = 2.0 ** -6
 SHRINKAGE = 4.0     # a chord correction that shrinks by less is replaced by Newton's
 
 Load = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -42,8 +44,12 @@ class Structure(Protocol):
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the nodal gradient of the potential energy."""
 
-    def tangent(self, position: np.ndarray, v_squared: float) -> np.ndarray:
-        """Return its derivative, a symmetric band (2 w + 1, m) on the free degrees of freedom."""
+    def tangent(self, position: np.ndarray, v_squared: float, pressure: float = 0.0,
+                before: np.ndarray | None = None) -> np.ndarray:
+        """Return its derivative, a symmetric band (2 w + 1, m) on the free degrees of freedom.
+
+        ``before`` is the position of the last iteration, if any.
+        """
 
     def surface(self, nodal: np.ndarray) -> np.ndarray:
         """Return what the flow sees of nodal positions or velocities, (n + 1, 2), linear."""
@@ -104,10 +110,10 @@ class Operator:
 
 
 def _inverse(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
-             resistance: LowRank, damping: float) -> Inverse:
+             resistance: LowRank, damping: float, before: np.ndarray | None = None) -> Inverse:
     """Return the inverse of kappa^2 M + kappa (R + damping M) + K(position)."""
     kappa = 1.5 / dt
-    band = structure.tangent(position, v_squared)
+    band = structure.tangent(position, v_squared, 0.0, before)
     band[len(band) // 2] += kappa * (kappa + damping) * np.repeat(structure.mass, 2)[
         structure.free]
     return Inverse.of(band, resistance, kappa)
@@ -139,33 +145,85 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
     ``load(position, velocity)`` returns the external nodal forces (nodes, 2), affine in velocity
     with the slope -``operator.resistance``. ``damping`` is mass-proportional (1/time). Iterates
     from ``guess`` (`Motion.predict` by default) until the largest correction falls below
-    ``tolerance`` chords. Raises `Slack`, `Diverged` or `NotConverged`.
+    ``tolerance`` chords; where that is slow, as after a jump of voltage, by Newton's method from
+    the present position, if necessary in several shares of the imbalance there. Raises `Slack`,
+    `Diverged` or `NotConverged`.
     """
-    position = np.array(motion.predict(dt) if guess is None else guess)
-    solve = operator.inverse
-    previous = np.inf
-    for iteration in range(ITERATIONS):
-        velocity = motion.rate(position, dt)
-        residual = _imbalance(structure.mass, velocity, motion.velocity, motion.velocity_before,
-                              dt, damping, structure.internal_force(position, v_squared),
-                              load(position, velocity)).reshape(-1)[structure.free]
-        correction = solve(residual)
-        size = np.abs(correction).max()
-        if size > previous / SHRINKAGE and size > tolerance * structure.chord:
-            solve = _inverse(structure, position, v_squared, dt, operator.resistance, damping)
-            correction = solve(residual)
-            size = np.abs(correction).max()
-        if not np.isfinite(size):
-            raise Diverged(f'structure: non-finite residual or correction in iteration '
-                           f'{iteration}; check the load or reduce the time step', motion)
-        position.reshape(-1)[structure.free] -= correction
-        if size <= tolerance * structure.chord:
-            structure.require_taut(position, v_squared)
-            velocity = motion.rate(position, dt)
-            return Motion(position, velocity, motion.position, motion.velocity)
-        previous = size
+    step = _Step(structure, motion, dt, v_squared, load, operator, damping, tolerance)
+    start = motion.predict(dt) if guess is None else guess
+    position = step.by_chords(start)
+    if position is None:
+        position = march(step.by_newton, motion.position, SMALLEST_SHARE)
     structure.require_taut(position, v_squared)
-    raise NotConverged(f'structure: largest correction {size / structure.chord:.3g} chords, '
-                       f'residual {np.abs(residual).max():.3g} after {ITERATIONS} iterations '
-                       f'(tolerance {tolerance:.3g}); reduce the time step', motion)
+    return Motion(position, motion.rate(position, dt), motion.position, motion.velocity)
 
+
+@dataclass(frozen=True)
+class _Step:
+    """The equations of one step, see `advance`."""
+
+    structure: Structure
+    motion: Motion
+    dt: float
+    v_squared: float
+    load: Load
+    operator: Operator
+    damping: float
+    tolerance: float
+
+    def inverse(self, position: np.ndarray, before: np.ndarray | None = None) -> Inverse:
+        """Return the inverse of the iteration matrix about ``position``."""
+        return _inverse(self.structure, position, self.v_squared, self.dt,
+                        self.operator.resistance, self.damping, before)
+
+    def residual(self, position: np.ndarray) -> np.ndarray:
+        """Return the imbalance (m,) of the free degrees of freedom."""
+        velocity = self.motion.rate(position, self.dt)
+        return _imbalance(
+            self.structure.mass, velocity, self.motion.velocity, self.motion.velocity_before,
+            self.dt, self.damping, self.structure.internal_force(position, self.v_squared),
+            self.load(position, velocity)).reshape(-1)[self.structure.free]
+
+    def by_chords(self, start: np.ndarray) -> np.ndarray | None:
+        """Return the position after iterations with the operator, or None if they are slow."""
+        position, previous = np.array(start), np.inf
+        for _ in range(ITERATIONS):
+            try:
+                correction = self.operator.inverse(self.residual(position))
+            except Diverged:
+                return None
+            size = np.abs(correction).max()
+            if not size <= max(previous / SHRINKAGE, self._accuracy):
+                return None
+            position.reshape(-1)[self.structure.free] -= correction
+            if size <= self._accuracy:
+                return position
+            previous = size
+        return None
+
+    def by_newton(self, start: np.ndarray, share: float) -> np.ndarray:
+        """Return the position where ``share`` of the imbalance of the present one is gone."""
+        held = (1.0 - share) * self.residual(self.motion.position) if share < 1.0 else 0.0
+        position, before = start, None
+        for iteration in range(ITERATIONS):
+            with np.errstate(invalid='ignore'):
+                residual = self.residual(position) - held
+            correction = self.inverse(position, before)(residual)
+            size = np.abs(correction).max()
+            if not np.isfinite(size):
+                raise Diverged(f'structure: non-finite residual or correction in iteration '
+                               f'{iteration}; check the load or reduce the time step',
+                               self.motion)
+            before, position = position, position.copy()
+            position.reshape(-1)[self.structure.free] -= correction
+            if size <= self._accuracy:
+                return position
+        self.structure.require_taut(position, self.v_squared)
+        raise NotConverged(f'structure: largest correction {size / self.structure.chord:.3g} '
+                           f'chords, residual {np.abs(residual).max():.3g} after {ITERATIONS} '
+                           f'iterations (tolerance {self.tolerance:.3g}); reduce the time step',
+                           self.motion)
+
+    @property
+    def _accuracy(self) -> float:
+        return self.tolerance * self.structure.chord

@@ -19,10 +19,7 @@ from dewing_sim.errors import BadInput, Slack
 from dewing_sim.scales import Scales
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
-from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer
-from dewing_sim.structure.sheet import Sheet
-
-SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
+from dewing_sim.structure.sheet import SI, Response, Sheet
 
 
 @numba.njit(cache=True)
@@ -107,17 +104,8 @@ class Membrane:
 
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Membrane':
-        """Return the membrane of a parameter section in the units of ``scales``.
-
-        Voltages stay in volt: the permittivity is taken in units of pressure length^2 / V^2.
-        """
-        elastomer = Elastomer(
-            section.shear_modulus / scales.pressure, section.gent_limit,
-            section.bulk_modulus / scales.pressure,
-            VACUUM_PERMITTIVITY * section.relative_permittivity
-            / (scales.pressure * scales.length ** 2))
-        sheet = Sheet(elastomer, section.initial_thickness / scales.length,
-                      section.prestretch_lateral)
+        """Return the membrane of a parameter section in the units of ``scales``."""
+        sheet = Sheet.from_parameters(section, scales)
         return cls.uniform(sheet, section.prestretch, section.density / scales.density,
                            section.chord / scales.length, section.elements)
 
@@ -147,7 +135,11 @@ class Membrane:
 
     def tension(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the tensions (n,), force per unit span; negative where the sheet is slack."""
-        return self.sheet.respond(self.stretch(position), v_squared).tension
+        return self.respond(position, v_squared).tension
+
+    def respond(self, position: np.ndarray, v_squared: float) -> Response:
+        """Return tension, its slopes and thickness of the elements, each (n,)."""
+        return self.sheet.respond(self.stretch(position), v_squared)
 
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the gradient (n+1, 2) of the potential energy in ``position`` (n+1, 2)."""
@@ -155,11 +147,13 @@ class Membrane:
         response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
         return _assemble_force(edges, response.tension)
 
-    def tangent(self, position: np.ndarray, v_squared: float, pressure=0.0) -> np.ndarray:
+    def tangent(self, position: np.ndarray, v_squared: float, pressure=0.0,
+                before: np.ndarray | None = None) -> np.ndarray:
         """Return d(internal force)/d(position) of the free nodes as a band (7, 2(n-1)).
 
         The layout is that of `scipy.linalg.solve_banded` with bandwidths (3, 3). A non-zero
-        ``pressure``, scalar or (n,), subtracts the stiffness of that follower load.
+        ``pressure``, scalar or (n,), subtracts the stiffness of that follower load. ``before``,
+        the position of Newton's last iteration, does not matter here.
         """
         edges = _edges(position)
         response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
@@ -199,8 +193,18 @@ class Membrane:
         k = int(np.argmin(tension))
         if tension[k] > 0.0:
             return
+        self._raise_slack(k, tension[k], position, v_squared)
+
+    def require_bearable(self, position: np.ndarray, v_squared: float) -> None:
+        """Raise `Slack` if V^2 takes all tension at the typical stretch of ``position``."""
+        stretch = float(np.median(self.stretch(position)))
+        tension = float(self.sheet.respond([stretch], v_squared).tension[0])
+        if tension <= 0.0:
+            self._raise_slack(self.elements // 2, tension, position, v_squared)
+
+    def _raise_slack(self, k: int, tension: float, position: np.ndarray, v_squared: float):
         limit = self.sheet.loss_of_tension_v_squared(self.stretch(position)[k])
-        raise Slack(f'slack membrane: element {k} has tension {tension[k]:.6g} at '
+        raise Slack(f'slack membrane: element {k} has tension {tension:.6g} at '
                     f'{math.sqrt(v_squared):.6g} V and loses it at {math.sqrt(limit):.6g} V; '
                     'lower the voltage or raise the prestretch')
 

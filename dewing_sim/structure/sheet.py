@@ -15,8 +15,12 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.structure.material import Elastomer, modulus, slopes, stress
+from dewing_sim.scales import Scales
+from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer, modulus, slopes, stress
+
+SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
 
 
 @numba.njit(cache=True)
@@ -101,6 +105,20 @@ class Sheet:
     elastomer: Elastomer
     initial_thickness: float
     lateral_stretch: float = 1.0
+
+    @classmethod
+    def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Sheet':
+        """Return the sheet of a parameter section in the units of ``scales``.
+
+        Voltages stay in volt: the permittivity is taken in units of pressure length^2 / V^2.
+        """
+        elastomer = Elastomer(
+            section.shear_modulus / scales.pressure, section.gent_limit,
+            section.bulk_modulus / scales.pressure,
+            VACUUM_PERMITTIVITY * section.relative_permittivity
+            / (scales.pressure * scales.length ** 2))
+        return cls(elastomer, section.initial_thickness / scales.length,
+                   section.prestretch_lateral)
 
     def respond(self, stretch, v_squared: float) -> Response:
         """Return tension, slopes and thickness at total stretches (n,) and the given V^2.

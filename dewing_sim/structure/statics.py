@@ -11,8 +11,9 @@ from scipy.linalg import solve_banded
 from dewing_sim.errors import Diverged, NotConverged, RunFailed
 
 TOLERANCE = 1.0e-12     # chords
+ROUNDING = 1.0e-9       # chords, below which a correction that no longer shrinks is rounding
 ITERATIONS = 40
-SMALLEST_SHARE = 1.0e-4
+SMALLEST_SHARE = 2.0 ** -13
 
 
 class Structure(Protocol):
@@ -28,8 +29,12 @@ class Structure(Protocol):
     def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
         """Return the nodal forces of a pressure jump."""
 
-    def tangent(self, position: np.ndarray, v_squared: float, pressure) -> np.ndarray:
+    def tangent(self, position: np.ndarray, v_squared: float, pressure,
+                before: np.ndarray | None) -> np.ndarray:
         """Return d(internal - pressure force)/d(position) as a band (2 w + 1, m)."""
+
+    def require_bearable(self, position: np.ndarray, v_squared: float) -> None:
+        """Raise `Slack` if V^2 takes all tension at the stretch of ``position``."""
 
     def require_taut(self, position: np.ndarray, v_squared: float) -> None:
         """Raise `Slack` if the structure cannot carry its state."""
@@ -45,8 +50,12 @@ def equilibrium(structure: Structure, pressure, v_squared: float, follower: bool
     """
     pressure = np.asarray(pressure, dtype=float)
 
-    def solve(position, load, square):
-        position = newton(structure, position, square, load, follower)
+    def solve(start, load, square):
+        try:
+            position = newton(structure, start, square, load, follower)
+        except RunFailed:
+            structure.require_bearable(start, square)
+            raise
         structure.require_taut(position, square)
         return position
 
@@ -59,18 +68,22 @@ def newton(structure: Structure, position: np.ndarray, v_squared: float, pressur
            follower: bool = True, held: float | np.ndarray = 0.0) -> np.ndarray:
     """Return the position in equilibrium with pressure and dead nodal forces ``held``."""
     force = structure.pressure_force(structure.rest_position, pressure)
+    previous, before = np.inf, None
     for _ in range(ITERATIONS):
         if follower:
             force = structure.pressure_force(position, pressure)
         imbalance = structure.internal_force(position, v_squared) - force - held
-        band = structure.tangent(position, v_squared, pressure if follower else 0.0)
+        band = structure.tangent(position, v_squared, pressure if follower else 0.0,
+                                 before)
         correction = _solve(band, imbalance.ravel()[structure.free])
-        position = position.copy()
+        before, position = position, position.copy()
         position.reshape(-1)[structure.free] -= correction
-        if np.abs(correction).max() <= TOLERANCE * structure.chord:
+        size = np.abs(correction).max() / structure.chord
+        if size <= TOLERANCE or 0.5 * previous < size < ROUNDING:
             return position
+        previous = size
     raise NotConverged(f'static equilibrium at {math.sqrt(v_squared):.6g} V: correction '
-                       f'{np.abs(correction).max():.3g} after {ITERATIONS} iterations; '
+                       f'{size:.3g} chords after {ITERATIONS} iterations; '
                        'reduce pressure or voltage')
 
 
@@ -83,7 +96,8 @@ def _solve(band: np.ndarray, imbalance: np.ndarray) -> np.ndarray:
                        'the membrane carries no tension') from None
 
 
-def march(solve: Callable[[np.ndarray, float], np.ndarray], position: np.ndarray) -> np.ndarray:
+def march(solve: Callable[[np.ndarray, float], np.ndarray], position: np.ndarray,
+          smallest: float = SMALLEST_SHARE) -> np.ndarray:
     """Raise the share of a load from 0 to 1, halving the step on failure, doubling after."""
     share, step = 0.0, 1.0
     while share < 1.0:
@@ -91,7 +105,7 @@ def march(solve: Callable[[np.ndarray, float], np.ndarray], position: np.ndarray
             position = solve(position, min(1.0, share + step))
         except RunFailed:
             step *= 0.5
-            if step < SMALLEST_SHARE:
+            if step < smallest:
                 raise
         else:
             share, step = share + step, 2.0 * step

@@ -1,0 +1,270 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The membrane as solid elements: a prestretched strip, one element through the thickness.
+
+Nodes are numbered bottom, top, bottom, top, ... along the chord, in plane strain. The strip is
+pinned at the lower side of its edges, as in the paper, and hangs from there: in the interior its
+mid-plane aligns with the pins, within about one thickness of the edges it bends away. Total
+Lagrangian: the reference is the strip before prestretch. Forces are per unit span; any consistent
+system of units.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput, Diverged, Slack
+from dewing_sim.scales import Scales
+from dewing_sim.structure import solid_assembly as assembly
+from dewing_sim.structure import statics
+from dewing_sim.structure.follower import pressure_force, subtract_stiffness
+from dewing_sim.structure.sheet import SI, Sheet
+from dewing_sim.structure.solid_element import BALANCED, LOCKED
+
+HALF_BAND = 7               # couplings of a degree of freedom on either side
+EDGE_LENGTH = 2.0           # of the first element, in deformed thicknesses
+GROWTH = 1.5                # of element lengths away from the edges
+FITS = 10                   # of the reference length
+LOWER, FACE = 'lower', 'face'
+
+
+class Response(NamedTuple):
+    """Nodal forces (2(n+1), 2); tension, force per span, and thickness of elements (n,)."""
+
+    force: np.ndarray
+    tension: np.ndarray
+    thickness: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A prestretched strip of hexahedra between (0, 0) and (chord, 0).
+
+    ``support`` is ``lower`` (the lower side of the edges is pinned) or ``face`` (the whole faces
+    of the edges, with the mid-plane at zero height). ``length`` (n,) are the element lengths
+    before prestretch; ``mass`` (2(n+1),) is lumped at the nodes; ``rest_position`` (2(n+1), 2) is
+    the unloaded equilibrium.
+    """
+
+    sheet: Sheet
+    prestretch: float
+    chord: float
+    support: str
+    length: np.ndarray
+    mass: np.ndarray
+    rest_position: np.ndarray
+
+    @classmethod
+    def uniform(cls, sheet: Sheet, prestretch: float, density: float, chord: float,
+                elements: int, support: str = LOWER) -> 'Solid':
+        """Return a strip of ``elements`` equal elements, shorter ones at the edges.
+
+        The ends give way, so the strip is cut a little shorter than chord / prestretch: at rest
+        and without voltage the interior carries the prestretch. ``density`` is the elastomer's.
+        """
+        if elements < 4:
+            raise BadInput(f'elements = {elements} is out of range: at least 4')
+        thickness = float(sheet.respond([prestretch], 0.0).thickness[0])
+        share = _lengths(elements, EDGE_LENGTH * thickness / chord)
+        position = np.zeros((2 * elements + 2, 2))
+        position[:, 0] = np.repeat(chord * np.concatenate([[0.0], np.cumsum(share)]), 2)
+        position[0::2, 1], position[1::2, 1] = -0.5 * thickness, 0.5 * thickness
+        total = chord / prestretch
+        solid = cls(sheet, prestretch, chord, FACE, total * share,
+                    _mass(total * share, sheet, density), position)
+        return solid if support == FACE else _fitted(solid, density)
+
+    @classmethod
+    def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Solid':
+        """Return the strip of a parameter section in the units of ``scales``."""
+        return cls.uniform(Sheet.from_parameters(section, scales), section.prestretch,
+                           section.density / scales.density, section.chord / scales.length,
+                           section.elements)
+
+    @property
+    def elements(self) -> int:
+        """Number of elements n."""
+        return self.length.size
+
+    @cached_property
+    def free(self) -> np.ndarray:
+        """Entries of a raveled (2(n+1), 2) array that may move."""
+        return np.flatnonzero(self._equations.ravel() >= 0)
+
+    @cached_property
+    def _equations(self) -> np.ndarray:
+        """Number of each coordinate among the free ones, -1 at pins: (n+1, bottom or top, 2)."""
+        fixed = np.zeros((self.elements + 1, 2, 2), dtype=bool)
+        fixed[[0, -1], :1 if self.support == LOWER else 2] = True
+        return np.where(fixed, -1, np.cumsum(~fixed).reshape(fixed.shape) - 1)
+
+    @cached_property
+    def _share(self) -> np.ndarray:
+        """Weights of bottom and top in the surface, (n+1, 2)."""
+        share = np.full((self.elements + 1, 2), 0.5)
+        if self.support == LOWER:
+            share[[0, -1]] = 1.0, 0.0
+        return share
+
+    def surface(self, nodal: np.ndarray) -> np.ndarray:
+        """Return what the flow sees of nodal positions or velocities, (n+1, 2).
+
+        That is the mid-plane, and the pins at its ends.
+        """
+        return np.einsum('ka,kai->ki', self._share, nodal.reshape(-1, 2, 2))
+
+    def spread(self, force: np.ndarray) -> np.ndarray:
+        """Return the nodal forces of forces (n+1, 2) on the surface, its transpose."""
+        return (self._share[:, :, None] * force[:, None, :]).reshape(-1, 2)
+
+    def respond(self, position: np.ndarray, v_squared: float) -> Response:
+        """Return the response at ``position`` (2(n+1), 2) and V^2.
+
+        Raises `BadInput` for a negative or non-finite V^2, `Diverged` beyond the Gent limit or
+        where an element turns inside out.
+        """
+        if not 0.0 <= v_squared < math.inf:
+            raise BadInput(f'v_squared = {v_squared} V^2 is out of range: from 0 to infinity')
+        force, tension, thinning, status, k = assembly.respond(
+            position, *self._constants(v_squared))
+        self._require_balance(status, k, position, v_squared)
+        return Response(force, tension, self.sheet.initial_thickness * thinning)
+
+    def tension(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return the tensions (n,), force per unit span; negative where the strip is slack."""
+        return self.respond(position, v_squared).tension
+
+    def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return the gradient (2(n+1), 2) of the potential energy."""
+        return self.respond(position, v_squared).force
+
+    def energies(self, position: np.ndarray, v_squared: float) -> tuple[float, float]:
+        """Return the elastic and the electrostatic energy (C V^2 / 2) per unit span."""
+        return assembly.energies(position, *self._constants(v_squared))
+
+    def tangent(self, position: np.ndarray, v_squared: float, pressure=0.0,
+                before: np.ndarray | None = None) -> np.ndarray:
+        """Return d(internal force)/d(position) of the free coordinates as a band (15, m).
+
+        The layout is that of `scipy.linalg.solve_banded` with bandwidths (7, 7). A non-zero
+        ``pressure``, scalar or (n,), subtracts the stiffness of that follower load. ``before`` is
+        the position of Newton's last iteration, if any, whose step helps the next.
+        """
+        band = np.zeros((2 * HALF_BAND + 1, self.free.size))
+        status, k = assembly.stiffness(position, *self._constants(v_squared),
+                                       self._equations.ravel(),
+                                       position if before is None else before, band)
+        self._require_balance(status, k, position, v_squared)
+        if np.any(pressure):
+            subtract_stiffness(band, np.full(self.elements, pressure, dtype=float),
+                               self._equations, self._share)
+        return band
+
+    def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
+        """Return the nodal forces of a pressure jump on the surface, scalar or (n,), to +y."""
+        return self.spread(pressure_force(self.surface(position), pressure))
+
+    def rest_tension(self, v_squared: float) -> float:
+        """Return the tension of the flat unloaded sheet at the prestretch."""
+        return float(self.sheet.respond([self.prestretch], v_squared).tension[0])
+
+    def stretch(self, position: np.ndarray) -> np.ndarray:
+        """Return the total stretches of the line of centres, (n,)."""
+        centres = position.reshape(-1, 2, 2).mean(axis=1)
+        return np.hypot(*np.diff(centres, axis=0).T) / self.length
+
+    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
+        """Raise `Slack` with element, tension and voltages if any tension is not positive."""
+        tension = self.tension(position, v_squared)
+        k = int(np.argmin(tension))
+        if tension[k] > 0.0:
+            return
+        self._raise_slack(k, tension[k], position, v_squared)
+
+    def require_bearable(self, position: np.ndarray, v_squared: float) -> None:
+        """Raise `Slack` if V^2 takes all tension at the typical stretch of ``position``."""
+        stretch = float(np.median(self.stretch(position)))
+        tension = float(self.sheet.respond([stretch], v_squared).tension[0])
+        if tension <= 0.0:
+            self._raise_slack(self.elements // 2, tension, position, v_squared)
+
+    def _raise_slack(self, k: int, tension: float, position: np.ndarray, v_squared: float):
+        limit = self.sheet.loss_of_tension_v_squared(self.stretch(position)[k])
+        raise Slack(f'slack membrane: element {k} has tension {tension:.6g} at '
+                    f'{math.sqrt(v_squared):.6g} V and loses it at {math.sqrt(limit):.6g} V; '
+                    'lower the voltage or raise the prestretch')
+
+    def equilibrium(self, pressure, v_squared: float, follower: bool = True) -> np.ndarray:
+        """Return the static position under a pressure jump, see `statics.equilibrium`."""
+        return statics.equilibrium(self, pressure, v_squared, follower)
+
+    def _constants(self, v_squared: float) -> tuple:
+        height = self.sheet.initial_thickness
+        return (self.length, height, self.sheet.lateral_stretch, v_squared / height ** 2,
+                *self.sheet.elastomer.constants)
+
+    def _require_balance(self, status: int, k: int, position: np.ndarray, v_squared: float):
+        if status == BALANCED:
+            return
+        where = (f'element {k} at stretch {self.stretch(position)[k]:.6g} and '
+                 f'{math.sqrt(v_squared):.6g} V')
+        if not np.isfinite(position).all():
+            raise Diverged(f'{where}: the deformation is not finite; '
+                           'reduce the time step or the load')
+        if status == LOCKED:
+            raise Diverged(f'{where}: I1bar - 3 reaches the Gent limit '
+                           f'{self.sheet.elastomer.gent_limit:.6g}; '
+                           'reduce the load or the prestretch')
+        raise Diverged(f'{where}: the element turns inside out or its thickness pulls in; '
+                       'reduce the voltage, the load or the time step')
+
+
+def _lengths(elements: int, first: float) -> np.ndarray:
+    """Return the shares (n,) of the chord: equal in the middle, growing from ``first``."""
+    place = np.minimum(np.arange(elements), np.arange(elements)[::-1])
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        length = np.minimum(middle, first * GROWTH ** np.minimum(place, 100.0))
+        low, high = (middle, high) if length.sum() < 1.0 else (low, middle)
+    return length / length.sum()
+
+
+def _mass(length: np.ndarray, sheet: Sheet, density: float) -> np.ndarray:
+    """Return nodal masses per span, a quarter of each element's at each of its nodes."""
+    quarter = 0.25 * density * sheet.initial_thickness / sheet.lateral_stretch * length
+    station = np.zeros(length.size + 1)
+    station[:-1] += quarter
+    station[1:] += quarter
+    return np.repeat(station, 2)
+
+
+def _fitted(solid: Solid, density: float) -> Solid:
+    """Return a strip on lower pins whose interior rests at the prestretch, from one on faces."""
+    target = solid.rest_tension(0.0)
+    slope = float(solid.sheet.respond([solid.prestretch], 0.0).stiffness[0]) * solid.prestretch
+    hanging = _released(solid)
+    for _ in range(FITS):
+        tension = float(np.median(hanging.tension(hanging.rest_position, 0.0)))
+        if abs(tension - target) <= 1.0e-9 * target:
+            break
+        length = hanging.length * (1.0 - (target - tension) / slope)
+        cut = replace(hanging, length=length, mass=_mass(length, solid.sheet, density))
+        hanging = replace(cut, rest_position=statics.newton(cut, hanging.rest_position, 0.0))
+    return hanging
+
+
+def _released(solid: Solid) -> Solid:
+    """Return the strip on lower pins, at rest: the reaction on the upper sides fades away."""
+    lower = replace(solid, support=LOWER)
+    position = statics.newton(solid, solid.rest_position, 0.0)
+    reaction = np.zeros_like(position)
+    reaction[[1, -1]] = lower.internal_force(position, 0.0)[[1, -1]]
+    position = statics.march(
+        lambda start, share: statics.newton(lower, start, 0.0, held=(1.0 - share) * reaction),
+        position)
+    return replace(lower, rest_position=position - position[0])

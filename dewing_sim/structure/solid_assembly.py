@@ -1,0 +1,123 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Forces, tangent and energies of a strip of solid elements, per unit deformed span."""
+
+import math
+
+import numba
+import numpy as np
+
+from dewing_sim.structure.material import energy
+from dewing_sim.structure.solid_element import (
+    BALANCED,
+    GAUSS,
+    NODES,
+    condense,
+    derivatives,
+    measures,
+    relax,
+    second_order_area,
+    shape,
+    shape_gradient,
+    shape_hessian,
+)
+
+
+@numba.njit(cache=True)
+def add_force(force, slope, k, length, height, lateral):
+    """Add the gradient of the energy per unit span of element k to the nodal forces."""
+    volume = length * height / lateral
+    for node in range(4):
+        for axis in range(2):
+            force[2 * k + node, axis] += volume * (
+                NODES[0, node] * slope[axis] / length
+                + NODES[1, node] * slope[2 + axis] / height
+                + NODES[2, node] * slope[4 + axis])
+
+
+@numba.njit(cache=True)
+def add_stiffness(band, curvature, k, length, height, lateral, equation):
+    """Add the Hessian of the energy per unit span of element k to a band (2 w + 1, m)."""
+    volume = length * height / lateral
+    width = band.shape[0] // 2
+    scale = (1.0 / length, 1.0 / height, 1.0)
+    for i in range(8):
+        row = equation[4 * k + i]
+        for j in range(8):
+            column = equation[4 * k + j]
+            if row < 0 or column < 0:
+                continue
+            value = 0.0
+            for a in range(3):
+                for b in range(3):
+                    value += (scale[a] * scale[b] * NODES[a, i // 2] * NODES[b, j // 2]
+                              * curvature[2 * a + i % 2, 2 * b + j % 2])
+            band[width + row - column, column] += volume * value
+
+
+@numba.njit(cache=True)
+def respond(position, length, height, lateral, field, mu, jm, bulk, eps):
+    """Return nodal forces (2(n+1), 2), tension and thinning of elements (n,), status, element.
+
+    The tension is the force through a cross-section, negative if it pushes.
+    """
+    n = length.size
+    force, tension, thinning = np.zeros(position.shape), np.empty(n), np.empty(n)
+    for k in range(n):
+        z = shape(position, k, length[k], height)
+        strains = measures(z, length[k], height)
+        a, b, status = relax(strains, lateral, field, mu, jm, bulk, eps)
+        if status != BALANCED:
+            return force, tension, thinning, status, k
+        gradient, _ = derivatives(strains, a, b, lateral, field, mu, jm, bulk, eps, False,
+                                  0.0)
+        slope = shape_gradient(z, strains, gradient, length[k], height)
+        tension[k] = math.copysign(height / lateral * math.hypot(slope[0], slope[1]),
+                                   slope[0] * z[0] + slope[1] * z[1])
+        thinning[k] = strains[2] / math.sqrt(strains[0])
+        add_force(force, slope, k, length[k], height, lateral)
+    return force, tension, thinning, BALANCED, -1
+
+
+@numba.njit(cache=True)
+def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equation, before,
+              band):
+    """Add the tangent to ``band`` (2 w + 1, m); return status and element.
+
+    ``equation`` (4 (n+1),) numbers the free coordinates and is negative at pins. ``before`` is
+    the position from which Newton's last step came, or ``position`` for the exact tangent.
+    """
+    for k in range(length.size):
+        z = shape(position, k, length[k], height)
+        strains = measures(z, length[k], height)
+        a, b, status = relax(strains, lateral, field, mu, jm, bulk, eps)
+        if status != BALANCED:
+            return status, k
+        excess = second_order_area(z, shape(before, k, length[k], height))
+        gradient, hessian = derivatives(strains, a, b, lateral, field, mu, jm, bulk, eps, True,
+                                        excess)
+        condense(hessian)
+        curvature = shape_hessian(z, strains, gradient, hessian, length[k], height)
+        add_stiffness(band, curvature, k, length[k], height, lateral, equation)
+    return BALANCED, -1
+
+
+@numba.njit(cache=True)
+def energies(position, length, height, lateral, field, mu, jm, bulk, eps):
+    """Return the elastic and the electrostatic energy eps J E^2 / 2 per unit span."""
+    elastic, electric = 0.0, 0.0
+    for k in range(length.size):
+        strains = measures(shape(position, k, length[k], height), length[k], height)
+        sa, sb, sd, p, q = strains
+        a, b, _ = relax(strains, lateral, field, mu, jm, bulk, eps)
+        volume = 0.25 * length[k] * height / lateral
+        for point in range(4):
+            xi = GAUSS if point & 1 else -GAUSS
+            eta = GAUSS if point & 2 else -GAUSS
+            s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
+            i1 = s1 * s1 * sa + s2 * s2 * sb + lateral * lateral
+            j = lateral * s1 * s2 * sd
+            y_squared = lateral * lateral * field * s1 * s1 * sa
+            elastic += volume * energy(i1, j, 0.0, mu, jm, bulk, eps)
+            electric += volume * 0.5 * eps * y_squared / j
+    return elastic, electric
