@@ -6,27 +6,25 @@ from collections.abc import Mapping
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from dewing_control.closed_loop import controller
+from dewing_control.closed_loop import controller, same_memory
 from dewing_control.settings import ControllerSettings
-from dewing_sim import harness, messages, parameters
+from dewing_sim import harness, messages, parameters, qos
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
-
-QUEUE = 10
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class ControllerNode(Node):
     """A supervised controller driven by measurements alone; it never looks at a clock.
 
     A repeated stamp repeats the answer; an earlier one means that the simulator began anew, and
-    so does the controller. Settings may change while it runs and keep what it remembers.
+    so does the controller. Settings may change while it runs; the controller keeps what it
+    remembers, or begins at the present V^2 where its memory has to be of another form.
     """
 
     def __init__(self, parameters: Mapping[str, Any] | None = None, **options):
@@ -38,21 +36,20 @@ class ControllerNode(Node):
         self._stamp, self._v_squared = -1, 0.0
         self._answers, self._saturated, self._complaint = 0, 0, ''
         self.add_on_set_parameters_callback(self._on_parameters)
-        self._command = self.create_publisher(JointState, 'command', QUEUE)
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', QUEUE)
-        self.create_subscription(String, 'case', self._on_case, LATCHED)
-        self.create_subscription(JointState, 'measurement', self._on_measurement, QUEUE)
+        self._command = self.create_publisher(JointState, 'command', qos.LOOP)
+        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', qos.EVENTS)
+        self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
+        self.create_subscription(JointState, 'measurement', self._on_measurement, qos.LATEST)
         self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _on_case(self, message: String):
         try:
             identity = Identity.from_yaml(message.data)
+            if identity != self.identity:
+                self._law = controller(self.settings, identity)
+                self.identity, self._stamp = identity, -1
         except BadInput as error:
             self._complain(str(error))
-            return
-        if identity != self.identity:
-            self.identity, self._stamp = identity, -1
-            self._law = controller(self.settings, identity)
 
     def _on_measurement(self, message: JointState):
         """Answer; a measurement that comes before the case will be sent again."""
@@ -66,7 +63,7 @@ class ControllerNode(Node):
                 self._complain(str(error))
                 return
             self._stamp = stamp
-        self._command.publish(messages.command(self._v_squared, message.header.stamp))
+        qos.publish(self._command, messages.command(self._v_squared, message.header.stamp))
 
     def _decide(self, measurement, begin: bool):
         if begin or self._stamp < 0:
@@ -77,9 +74,16 @@ class ControllerNode(Node):
         self._saturated += self._v_squared in (0.0, limit)
 
     def _on_parameters(self, given):
-        self.settings, answer = messages.changed(self.settings, given)
+        settings, answer = messages.changed(self.settings, given)
         if answer.successful and self.identity is not None:
-            self._law = controller(self.settings, self.identity)
+            try:
+                self._law = controller(settings, self.identity)
+            except BadInput as error:
+                return SetParametersResult(successful=False, reason=str(error))
+            if not same_memory(self.settings, settings):
+                self._memory = self._law.start(self._v_squared)
+        if answer.successful:
+            self.settings = settings
         return answer
 
     def _complain(self, sentence: str):

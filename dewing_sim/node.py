@@ -8,14 +8,12 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.clock import Clock, ClockType
-from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
-from dewing_sim import harness, messages, parameters
+from dewing_sim import harness, messages, parameters, qos
 from dewing_sim.build import build
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.lockstep import LockStep
@@ -23,8 +21,6 @@ from dewing_sim.parameters import Case
 from dewing_sim.settings import SimulatorSettings
 from dewing_sim.telemetry import Telemetry
 
-QUEUE = 10
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 WATCH_PERIOD = 0.05         # s, wall
 RESCUE = 'dewing_state.npz'
 
@@ -64,14 +60,16 @@ class SimulatorNode(Node):
         self._paused, self._pending = False, None
         self._began = self._created = self._asked = self._sent = monotonic()
         self._started, self._overdue, self._resent = False, False, 0
+        self._blocked = False
         self._connect()
 
     def _connect(self):
-        self._measurement = self.create_publisher(JointState, 'measurement', QUEUE)
-        self._identity = self.create_publisher(String, 'case', LATCHED)
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', QUEUE)
+        self._measurement = self.create_publisher(JointState, 'measurement', qos.LOOP)
+        self._identity = self.create_publisher(String, 'case', qos.LATCHED)
+        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', qos.EVENTS)
         self._telemetry = Telemetry(self, self.case, self.run, self.plant.dt)
-        self._command = self.create_subscription(JointState, 'command', self._on_command, QUEUE)
+        self._command = self.create_subscription(
+            JointState, 'command', self._on_command, qos.LATEST)
         for name, kind, callback in (('pause', SetBool, self._on_pause),
                                      ('reset', Trigger, self._on_reset),
                                      ('step', Trigger, self._on_step),
@@ -117,22 +115,36 @@ class SimulatorNode(Node):
     def _ask(self):
         """Publish the present measurement for the first time."""
         self._asked = self._sent = monotonic()
-        self._measurement.publish(messages.measurement(self.lockstep.outputs))
+        self._offer()
         self._telemetry.publish(self.lockstep.outputs)
+
+    def _offer(self):
+        """Publish the present measurement; while a listener cannot take it, the run waits."""
+        self._blocked = not qos.publish(self._measurement,
+                                        messages.measurement(self.lockstep.outputs))
+        if self._blocked:
+            self._set_status(messages.WARN, f'{self._missing}: simulated time waits for it')
+
+    @property
+    def _missing(self) -> str:
+        return ('a listener of measurement does not keep up' if self._blocked
+                else 'no valid command')
 
     def _insist(self, now: float):
         waited = now - self._asked
         if waited > self.run.command_timeout + self.run.hold_timeout:
-            self._finish(1, f'no valid command for {waited:.1f} s of wall time at '
+            self._finish(1, f'{self._missing} for {waited:.1f} s of wall time at '
                             f'{self.lockstep.outputs.time:.6f} s: stopped')
             return
-        if now - self._sent > self.run.resend_period:
+        if self._blocked:
+            self._offer()
+        elif now - self._sent > self.run.resend_period:
             self._sent, self._resent = now, self._resent + 1
-            self._measurement.publish(messages.measurement(self.lockstep.outputs))
+            self._offer()
         if waited > self.run.command_timeout and not self._overdue:
             self._overdue = True
             self._set_status(messages.WARN, (
-                f'no valid command for {waited:.1f} s: V^2 = {self.lockstep.v_squared:g} V^2 and '
+                f'{self._missing} for {waited:.1f} s: V^2 = {self.lockstep.v_squared:g} V^2 and '
                 f'simulated time are held, stopping in {self.run.hold_timeout:g} s'))
 
     def _on_command(self, message: JointState):
@@ -156,7 +168,11 @@ class SimulatorNode(Node):
             self._advance(v_squared)
 
     def _on_free_step(self):
-        if self.exit_status is None:
+        if self.exit_status is not None:
+            return
+        if self._blocked:
+            self._offer()
+        else:
             self._advance(self.lockstep.v_squared)
 
     def _advance(self, v_squared: float):
@@ -181,8 +197,7 @@ class SimulatorNode(Node):
             sentence += '; ' + self._save(self.settings.save or RESCUE)
         self._pace.cancel()
         self._set_status(messages.ERROR if status else messages.OK, sentence)
-        for publisher in (self._measurement, self._diagnostics):
-            publisher.wait_for_all_acked(Duration(seconds=1.0))
+        qos.deliver(self.publishers)
         self.exit_status = status
 
     def interrupt(self):

@@ -2,24 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """The recorder node: every topic of its namespace, the clock and diagnostics into an MCAP bag.
 
-It is for machines without ``ros2 bag record``, whose files it matches.
+It is for machines without ``ros2 bag record``, whose files it matches. Messages wait in the
+queues of the middleware until a timer writes them, many at a time: woken for every message, the
+recorder would take a good part of the processor time of the run it records.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from time import time_ns
 from typing import Any
 
+from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile
 
-from dewing_sim import bag, harness, messages, parameters
+from dewing_sim import bag, harness, messages, parameters, qos
 from dewing_sim.parameters import text
 
-DEPTH = 10000               # messages the middleware may hold while this process is not scheduled
 DISCOVERY_PERIOD = 0.05     # s
+WRITE_PERIOD = 0.02         # s
 FLUSH_PERIOD = 0.5          # s
 COMMON = ('/clock', '/diagnostics')
 
@@ -29,6 +31,14 @@ class RecorderSettings:
     """Parameters of the recorder."""
 
     output: str = text('MCAP file to write; it must not exist')
+
+
+class Polled(CallbackGroup):
+    """Subscriptions that no executor waits for."""
+
+    def can_execute(self, entity) -> bool:
+        """Leave every message where it is."""
+        return False
 
 
 class RecorderNode(Node):
@@ -43,9 +53,11 @@ class RecorderNode(Node):
         self.exit_status: int | None = None
         self.reason = ''
         self.bag = bag.BagWriter(self.settings.output)
-        self._topics: set[str] = set()
+        self._polled = Polled()
+        self._topics: dict[str, Any] = {}
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(DISCOVERY_PERIOD, self._discover, clock=steady)
+        self.create_timer(WRITE_PERIOD, self._write, clock=steady)
         self.create_timer(FLUSH_PERIOD, self._flush, clock=steady)
 
     def _discover(self):
@@ -58,24 +70,26 @@ class RecorderNode(Node):
                 self._subscribe(topic, kinds[0], publishers[0].qos_profile)
 
     def _subscribe(self, topic: str, kind: str, offered: QoSProfile):
-        self._topics.add(topic)
         package, _, name = kind.split('/')
         self.bag.add_topic(topic, kind, dict(
             reliability=offered.reliability.name.lower(),
             durability=offered.durability.name.lower()))
-        reliable = offered.reliability is not ReliabilityPolicy.BEST_EFFORT
-        latched = offered.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        qos = QoSProfile(
-            depth=DEPTH,
-            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-            durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE)
+        self._topics[topic] = self.create_subscription(
+            getattr(import_module(f'{package}.msg'), name), topic, lambda message: None,
+            qos.complete(offered), raw=True, callback_group=self._polled)
 
-        def write(data, info):
-            self._guarded(lambda: self.bag.write(topic, data, time_ns(),
-                                                 info['source_timestamp']))
+    def _write(self):
+        self._guarded(self._write_waiting)
 
-        self.create_subscription(getattr(import_module(f'{package}.msg'), name), topic, write,
-                                 qos, raw=True)
+    def _write_waiting(self):
+        """Write every message that has come in."""
+        for topic, subscription in self._topics.items():
+            queue = subscription.handle
+            with queue:
+                while taken := queue.take_message(subscription.msg_type, True):
+                    data, times = taken
+                    self.bag.write(topic, data, times['received_timestamp'],
+                                   times['source_timestamp'])
 
     def _flush(self):
         self._guarded(self.bag.flush)
@@ -90,7 +104,8 @@ class RecorderNode(Node):
                 self.reason = f'{self.settings.output}: recording stopped ({error.strerror})'
 
     def interrupt(self):
-        """Close the bag."""
+        """Write what has come in and close the bag."""
+        self._write()
         self._guarded(self.bag.close)
 
 

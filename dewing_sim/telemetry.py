@@ -5,12 +5,10 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from dewing_sim import messages
+from dewing_sim import messages, qos
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.settings import Run
-
-QUEUE = 10
 
 
 class Channel(NamedTuple):
@@ -30,7 +28,7 @@ class Telemetry:
 
         def channel(topic: str, kind: type, rate: float, make: Callable) -> Channel:
             period = max(1, round(1.0 / (rate * dt)))
-            return Channel(node.create_publisher(kind, topic, QUEUE), period, make)
+            return Channel(node.create_publisher(kind, topic, qos.every(period)), period, make)
 
         def scalar(name: str) -> Callable:
             return lambda outputs: messages.scalar(getattr(outputs, name))

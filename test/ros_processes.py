@@ -18,6 +18,7 @@ from dewing_sim.plant import Measurement
 
 MODULES = dict(simulator='dewing_sim.node', controller='dewing_control.node',
                recorder='dewing_sim.recorder')
+PATIENCE = 300.0            # s, for a machine that is busy with other things
 
 
 class Graph:
@@ -49,7 +50,7 @@ class Graph:
 
     def stop(self):
         for process in self.processes:
-            harness.stop_node(process)
+            harness.stop_node(process, PATIENCE)
 
 
 @contextmanager
@@ -62,8 +63,8 @@ def graph(folder):
             result.stop()
 
 
-def wait_until(condition, timeout=30.0):
-    deadline = time.monotonic() + timeout
+def wait_until(condition):
+    deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline, 'the condition did not come true in time'
         time.sleep(0.05)

@@ -8,18 +8,16 @@ import pytest
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from reduced_wing import CAMBER, first_mode
-from ros_processes import offline
+from ros_processes import PATIENCE, offline
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
-from dewing_control.node import LATCHED, ControllerNode
-from dewing_sim import harness, messages, reduced
+from dewing_control.node import ControllerNode
+from dewing_sim import harness, messages, qos, reduced
 from dewing_sim.errors import RunFailed
 from dewing_sim.identity import Identity
 from dewing_sim.node import SimulatorNode
-
-TIMEOUT = 30.0
 
 
 class Scripted(Node):
@@ -45,7 +43,7 @@ class Commanded(Node):
         self.commands = []
         plant = first_mode()
         identity = Identity.of('reduced', plant, plant.rest(), plant.v_squared_max, {})
-        self.case = self.create_publisher(String, 'case', LATCHED)
+        self.case = self.create_publisher(String, 'case', qos.LATCHED)
         self.out = self.create_publisher(JointState, 'measurement', 10)
         self.create_subscription(JointState, 'command', self.commands.append, 10)
         self.case.publish(String(data=identity.to_yaml()))
@@ -75,14 +73,14 @@ def scripted(session, settings):
     """Return a session with a simulator that waits for the scripted node's first command."""
     simulator = session.add(SimulatorNode, settings | {'run.resend_period': 1.0e3})
     script = session.add(Scripted)
-    session.spin_until(lambda: script.measurements, TIMEOUT)
+    session.spin_until(lambda: script.measurements, PATIENCE)
     return session, simulator, script
 
 
 def test_a_closed_loop_in_ten_lines_is_the_loop_offline(session, settings):
     simulator = session.add(SimulatorNode, settings | {'run.duration': 0.02})
     session.add(ControllerNode)
-    session.spin_until(lambda: simulator.exit_status is not None, TIMEOUT)
+    session.spin_until(lambda: simulator.exit_status is not None, PATIENCE)
     assert simulator.exit_status == 0 and simulator.reason.startswith('finished at 0.02 s')
     assert simulator.lockstep.outputs.camber_mean == offline(200)['camber_mean'][-1]
 
@@ -96,20 +94,20 @@ def test_spinning_ends_with_a_sentence_when_the_condition_does_not_come(session)
 def test_unusable_commands_are_counted_reported_and_not_obeyed(scripted, v_squared):
     session, simulator, script = scripted
     script.send(v_squared)
-    session.spin_until(lambda: simulator.lockstep.rejected == 1, TIMEOUT)
+    session.spin_until(lambda: simulator.lockstep.rejected == 1, PATIENCE)
     assert simulator.lockstep.steps == 0
     assert 'is out of range, from 0 to 1.5625e+06 V^2' in simulator.reason
     script.send(1.0e5)
-    session.spin_until(lambda: simulator.lockstep.steps == 1, TIMEOUT)
+    session.spin_until(lambda: simulator.lockstep.steps == 1, PATIENCE)
     assert simulator.lockstep.v_squared == 1.0e5 and simulator.reason == 'running'
 
 
 def test_stale_and_foreign_commands_are_dropped(scripted):
     session, simulator, script = scripted
     script.send(1.0e5, messages.to_stamp(5))
-    session.spin_until(lambda: simulator.lockstep.stale == 1, TIMEOUT)
+    session.spin_until(lambda: simulator.lockstep.stale == 1, PATIENCE)
     script.send(1.0e5, name='voltage')
-    session.spin_until(lambda: 'named v_squared' in simulator.reason, TIMEOUT)
+    session.spin_until(lambda: 'named v_squared' in simulator.reason, PATIENCE)
     assert simulator.lockstep.rejected == 1 and simulator.lockstep.steps == 0
 
 
@@ -118,35 +116,35 @@ def test_a_duplicate_command_steps_once(scripted):
     first = script.measurements[-1].header.stamp
     script.send(1.0e5, first)
     script.send(2.0e5, first)
-    session.spin_until(lambda: simulator.lockstep.stale == 1, TIMEOUT)
+    session.spin_until(lambda: simulator.lockstep.stale == 1, PATIENCE)
     assert simulator.lockstep.steps == 1 and simulator.lockstep.v_squared == 1.0e5
 
 
 def test_an_unanswered_measurement_is_sent_again_unchanged(session, settings):
     session.add(SimulatorNode, settings | {'run.resend_period': 0.1})
     script = session.add(Scripted)
-    session.spin_until(lambda: len(script.measurements) == 3, TIMEOUT)
+    session.spin_until(lambda: len(script.measurements) == 3, PATIENCE)
     assert script.measurements[0] == script.measurements[1] == script.measurements[2]
 
 
 def test_no_controller_ends_the_run_after_the_stated_wait(session, settings):
     simulator = session.add(SimulatorNode, settings | {'run.discovery_timeout': 0.2})
-    session.spin_until(lambda: simulator.exit_status is not None, TIMEOUT)
+    session.spin_until(lambda: simulator.exit_status is not None, PATIENCE)
     assert simulator.exit_status == 1 and '0 controllers and 0 listeners' in simulator.reason
 
 
 def test_free_mode_needs_no_controller_and_takes_the_last_command(session, settings):
     simulator = session.add(SimulatorNode, settings | {'run.mode': 'free'})
     script = session.add(Scripted)
-    session.spin_until(lambda: simulator.lockstep.steps > 10, TIMEOUT)
+    session.spin_until(lambda: simulator.lockstep.steps > 10, PATIENCE)
     script.send(3.0e5)
-    session.spin_until(lambda: simulator.lockstep.v_squared == 3.0e5, TIMEOUT)
+    session.spin_until(lambda: simulator.lockstep.v_squared == 3.0e5, PATIENCE)
 
 
 def call(session, client, request):
-    session.spin_until(client.service_is_ready, TIMEOUT)
+    session.spin_until(client.service_is_ready, PATIENCE)
     future = client.call_async(request)
-    session.spin_until(future.done, TIMEOUT)
+    session.spin_until(future.done, PATIENCE)
     return future.result()
 
 
@@ -157,7 +155,7 @@ def test_services_pause_step_reset_and_save(scripted, tmp_path):
     assert call(session, services['pause'], SetBool.Request(data=True)).success
     assert not call(session, services['step'], Trigger.Request()).success
     script.send(1.0e5)
-    session.spin_until(lambda: simulator._pending is not None, TIMEOUT)
+    session.spin_until(lambda: simulator._pending is not None, PATIENCE)
     assert simulator.lockstep.steps == 0
     assert call(session, services['step'], Trigger.Request()).message == 'at 0.000100000 s'
     assert call(session, services['save'], Trigger.Request()).success
@@ -166,9 +164,9 @@ def test_services_pause_step_reset_and_save(scripted, tmp_path):
     assert simulator.lockstep.outputs.time == 0.0
     assert call(session, services['pause'], SetBool.Request(data=False)).success
     session.spin_until(lambda: messages.from_stamp(script.measurements[-1].header.stamp) == 0,
-                       TIMEOUT)
+                       PATIENCE)
     script.send(2.0e5)
-    session.spin_until(lambda: simulator.lockstep.v_squared == 2.0e5, TIMEOUT)
+    session.spin_until(lambda: simulator.lockstep.v_squared == 2.0e5, PATIENCE)
 
 
 def test_a_saved_state_is_restored_with_its_time_and_command(session, settings, tmp_path):
@@ -176,7 +174,7 @@ def test_a_saved_state_is_restored_with_its_time_and_command(session, settings, 
     plant.save(tmp_path / 'before.npz', plant.step(plant.rest(), 4.0e5))
     session.add(SimulatorNode, settings | {'restore': str(tmp_path / 'before.npz')})
     script = session.add(Scripted)
-    session.spin_until(lambda: script.measurements, TIMEOUT)
+    session.spin_until(lambda: script.measurements, PATIENCE)
     seen = messages.to_measurement(script.measurements[0])
     assert seen.time == pytest.approx(1.0e-4) and seen.v_squared == 4.0e5
 
@@ -192,7 +190,7 @@ def ask(session, controller, plant, step, camber):
     """Send one measurement, return V^2 of the answer."""
     before = len(plant.commands)
     plant.send(step, camber)
-    session.spin_until(lambda: len(plant.commands) > before, TIMEOUT)
+    session.spin_until(lambda: len(plant.commands) > before, PATIENCE)
     assert plant.commands[-1].header.stamp == messages.to_stamp(step * 100_000)
     return messages.to_v_squared(plant.commands[-1])
 
@@ -201,7 +199,7 @@ def ask(session, controller, plant, step, camber):
 def controlled(session):
     controller, plant = session.add(ControllerNode), session.add(Commanded)
     session.spin_until(lambda: controller.identity is not None
-                       and plant.out.get_subscription_count() > 0, TIMEOUT)
+                       and plant.out.get_subscription_count() > 0, PATIENCE)
     return session, controller, plant
 
 

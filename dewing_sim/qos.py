@@ -1,0 +1,60 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Quality of service of every topic, and how much a listener may fall behind.
+
+The loop (``measurement``, ``command``) keeps every message until all reliable listeners have
+taken it. Fast DDS keeps `KEPT` on the side of the publisher and as many on that of a keep-all
+listener; when both are full, the publisher waits, so that nobody loses a step of the loop. A
+listener that died holds it up for 20 s at most, the lease of its participant.
+"""
+
+from collections.abc import Iterable
+from time import monotonic
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+KEPT = 5000                 # messages, max_samples of Fast DDS
+PATIENCE = 30.0             # s, longer than the lease of a participant that died
+
+LOOP = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+LATEST = QoSProfile(depth=10)                   # of a listener that needs no old message
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+EVENTS = QoSProfile(depth=1000)                 # diagnostics
+
+
+def every(period: int) -> QoSProfile:
+    """Return the profile of what is published every ``period`` steps of the loop.
+
+    It is deep enough that a listener of the loop which lost nothing there loses nothing here.
+    """
+    return QoSProfile(depth=max(10, 2 * KEPT // period))
+
+
+def complete(offered: QoSProfile) -> QoSProfile:
+    """Return the profile of a listener that wants all that a publisher has ``offered``."""
+    reliable = offered.reliability is not ReliabilityPolicy.BEST_EFFORT
+    latched = offered.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_ALL,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE)
+
+
+def publish(publisher, message: Any) -> bool:
+    """Return whether ``message`` went out, False if after 0.1 s all queues are still full."""
+    try:
+        publisher.publish(message)
+    except rclpy_implementation.RCLError:
+        return False
+    return True
+
+
+def deliver(publishers: Iterable[Any]) -> None:
+    """Wait until the reliable listeners of ``publishers`` have all messages, or have gone."""
+    deadline = monotonic() + PATIENCE
+    for publisher in publishers:
+        while monotonic() < deadline and not publisher.wait_for_all_acked(Duration(seconds=0.2)):
+            pass                # in short waits, between which a signal is heard
