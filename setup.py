@@ -51,8 +51,11 @@ setup(
             'ros-jazzy-common-interfaces',
             'ros-jazzy-rmw-fastrtps-cpp',
         )],
+        'mpc': ['osqp>=1.0'],
         'test': [
+            'control>=0.10',
             'hypothesis>=6.60',
+            'osqp>=1.0',
             'pytest>=7.4',
             'pytest-timeout>=2.1',
         ],

@@ -4,7 +4,7 @@
 
 from typing import Any, Iterator
 
-from dewing_control.pid import Pid
+from dewing_control.laws import law
 from dewing_control.settings import ControllerSettings
 from dewing_control.supervisor import Controller, Supervisor
 from dewing_sim.identity import Identity
@@ -13,21 +13,32 @@ from dewing_sim.plant import Measurement, Outputs, Plant, rollout
 
 def controller(settings: ControllerSettings, identity: Identity) -> Supervisor:
     """Return the supervised controller that ``settings`` describe for a plant."""
-    return Supervisor(Pid.of(settings, identity), settings.command.period_steps,
+    return Supervisor(law(settings, identity), settings.command.period_steps,
                       settings.command.hold_steps)
 
 
-def closed_loop(plant: Plant, state: Any, law: Controller, steps: int,
+def same_memory(one: ControllerSettings, other: ControllerSettings) -> bool:
+    """Return whether the controllers of both settings remember the same quantities."""
+    return _form(one) == _form(other)
+
+
+def _form(settings: ControllerSettings) -> tuple:
+    return (settings.kind, settings.model, settings.reference.output, settings.lqg.states,
+            settings.disturbance_model.harmonics, settings.mpc.moves,
+            settings.command.period_steps)
+
+
+def closed_loop(plant: Plant, state: Any, loop: Controller, steps: int,
                 ) -> Iterator[tuple[Any, Outputs]]:
-    """Yield (state, outputs) after each of ``steps`` steps of ``plant`` under ``law``.
+    """Yield (state, outputs) after each of ``steps`` steps of ``plant`` under ``loop``.
 
     The controller takes over, without a bump, at the V^2 that led to ``state``.
     """
-    memory = law.start(plant.observe(state).v_squared)
+    memory = loop.start(plant.observe(state).v_squared)
 
     def command(outputs: Outputs) -> float:
         nonlocal memory
-        memory, v_squared = law.step(memory, Measurement.of(outputs))
+        memory, v_squared = loop.step(memory, Measurement.of(outputs))
         return v_squared
 
     return rollout(plant, state, command, steps)

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from dewing_control.closed_loop import controller
+from dewing_control.closed_loop import controller, same_memory
 from dewing_control.settings import ControllerSettings
 from dewing_sim import harness, messages, parameters, qos
 from dewing_sim.errors import BadInput
@@ -22,7 +23,8 @@ class ControllerNode(Node):
     """A supervised controller driven by measurements alone; it never looks at a clock.
 
     A repeated stamp repeats the answer; an earlier one means that the simulator began anew, and
-    so does the controller. Settings may change while it runs and keep what it remembers.
+    so does the controller. Settings may change while it runs; the controller keeps what it
+    remembers, or begins at the present V^2 where its memory has to be of another form.
     """
 
     def __init__(self, parameters: Mapping[str, Any] | None = None, **options):
@@ -43,12 +45,11 @@ class ControllerNode(Node):
     def _on_case(self, message: String):
         try:
             identity = Identity.from_yaml(message.data)
+            if identity != self.identity:
+                self._law = controller(self.settings, identity)
+                self.identity, self._stamp = identity, -1
         except BadInput as error:
             self._complain(str(error))
-            return
-        if identity != self.identity:
-            self.identity, self._stamp = identity, -1
-            self._law = controller(self.settings, identity)
 
     def _on_measurement(self, message: JointState):
         """Answer; a measurement that comes before the case will be sent again."""
@@ -73,9 +74,16 @@ class ControllerNode(Node):
         self._saturated += self._v_squared in (0.0, limit)
 
     def _on_parameters(self, given):
-        self.settings, answer = messages.changed(self.settings, given)
+        settings, answer = messages.changed(self.settings, given)
         if answer.successful and self.identity is not None:
-            self._law = controller(self.settings, self.identity)
+            try:
+                self._law = controller(settings, self.identity)
+            except BadInput as error:
+                return SetParametersResult(successful=False, reason=str(error))
+            if not same_memory(self.settings, settings):
+                self._memory = self._law.start(self._v_squared)
+        if answer.successful:
+            self.settings = settings
         return answer
 
     def _complain(self, sentence: str):

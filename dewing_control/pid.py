@@ -4,19 +4,24 @@
 
 With e = r - a/a_ref and u = V^2/V_L^2, for the sampling time T and filter time Tf,
 
-    u_k = sat(kp e_k + i_k + d_k),                    0 <= u <= u_max
-    i_k = i_{k-1} + T ki e_k                          (backward Euler)
+    u_k = sat(s_k + d_k),                             0 <= u <= u_max
+    s_k = s_{k-1} + kp (e_k - e_{k-1}) + T ki e_k     (backward Euler)
     d_k = (Tf d_{k-1} + kd (e_k - e_{k-1}))/(Tf + T)  (backward Euler)
 
-after which back-calculation draws i towards the value at which u just saturates, with time
-constant Tt: i_k += (1 - exp(-T/Tt)) (u_k - kp e_k - i_k - d_k). The reference r leaves the first
-measured camber and approaches the target at a limited rate.
+after which back-calculation draws s towards the value at which u just saturates, with time
+constant Tt: s_k += (1 - exp(-T/Tt)) (u_k - s_k - d_k). Proportional and integral part share s, so
+that a change of gains makes no bump. The reference r leaves the first measured camber and
+approaches the target at a limited rate.
 """
 
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
+from dewing_control.loop import Compensator
+from dewing_control.reference import ramp
 from dewing_control.settings import ControllerSettings, PidGains
 from dewing_sim.identity import Identity
 from dewing_sim.plant import Measurement
@@ -26,7 +31,7 @@ class Memory(NamedTuple):
     """What the next step of a `Pid` depends on; normalised, None before the first step."""
 
     reference: float | None
-    integral: float
+    sum: float                      # s, proportional and integral part
     derivative: float
     error: float
 
@@ -59,21 +64,32 @@ class Pid:
 
     def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
         """Return the next memory and V^2, which is never negative nor above the limit."""
+        return self.step_with(memory, measurement, 0.0)
+
+    def step_with(self, memory: Memory, measurement: Measurement, addition: float,
+                  ) -> tuple[Memory, float]:
+        """Return the same with ``addition`` (in V_L^2) added before the command saturates."""
         gains = self.gains
         camber = getattr(measurement, self.output) / self.camber_reference
-        reference = self._next_reference(memory.reference, camber)
+        reference = ramp(memory.reference, camber, self.target, self.rate * self.dt)
         error = reference - camber
+        change = error - memory.error
         derivative = (gains.derivative_filter * memory.derivative
-                      + gains.kd * (error - memory.error)) / (gains.derivative_filter + self.dt)
-        integral = memory.integral + self.dt * gains.ki * error
-        wanted = (gains.kp * error + integral + derivative) * self.v_squared_reference
+                      + gains.kd * change) / (gains.derivative_filter + self.dt)
+        total = memory.sum + gains.kp * change + self.dt * gains.ki * error
+        wanted = (total + derivative + addition) * self.v_squared_reference
         v_squared = min(max(wanted, 0.0), self.v_squared_max)
         excess = (wanted - v_squared) / self.v_squared_reference
-        integral += math.expm1(-self.dt / gains.tracking_time) * excess
-        return Memory(reference, integral, derivative, error), v_squared
+        total += math.expm1(-self.dt / gains.tracking_time) * excess
+        return Memory(reference, total, derivative, error), v_squared
 
-    def _next_reference(self, reference: float | None, camber: float) -> float:
-        if reference is None:
-            return camber
-        largest = self.rate * self.dt
-        return reference + min(max(self.target - reference, -largest), largest)
+    def compensator(self) -> Compensator:
+        """Return the law without saturation, from e to u, with the states s, d and e before."""
+        gains = self.gains
+        fading = gains.derivative_filter / (gains.derivative_filter + self.dt)
+        slope = gains.kd / (gains.derivative_filter + self.dt)
+        fresh = gains.kp + self.dt * gains.ki
+        return Compensator(
+            np.array([[1.0, 0.0, -gains.kp], [0.0, fading, -slope], [0.0, 0.0, 0.0]]),
+            np.array([fresh, slope, 1.0]), np.array([1.0, fading, -gains.kp - slope]),
+            fresh + slope)

@@ -1,0 +1,152 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The normalised linear model that controllers are designed on.
+
+With a = camber/a_ref, u = V^2/V_L^2 and the rest state (u0, 1),
+
+    x[k+1] = A x[k] + B (w[k] - u0),    a[k] = 1 + C x[k],    w = u a.
+
+A membrane under tension T0 (1 - u) feels V^2 as a load proportional to u times its curvature, so
+w = u a is the input in which the camber is linear: a string under a uniform load has a = 1 + w
+exactly, while in u it is a = 1/(1 - u). Near the rest state w and u agree to first order, and the
+model identified from V^2 serves both.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy import linalg
+
+from dewing_sim import reduced
+from dewing_sim.errors import BadInput
+from dewing_sim.reduced import Reduced
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A (n, n), B (n,), C (n,) of the deviations, sampling time ``dt`` (s) and u0."""
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    dt: float
+    operating_input: float
+
+    @classmethod
+    def of(cls, model: Reduced, output: str, steps: int = 1) -> 'Design':
+        """Return the model of ``output``, held and sampled every ``steps`` of its time steps.
+
+        Raises `BadInput` if the model lacks the output, has no positive static gain or is
+        unstable: it could not be told what V^2 a camber needs.
+        """
+        if output not in model.output_names:
+            raise BadInput(f'the model has no output {output}, only '
+                           f"{', '.join(model.output_names)}")
+        row = model.output_names.index(output)
+        camber = float(model.operating_outputs[row])
+        if not camber > 0.0:
+            raise BadInput(f'the model has {output} = {camber:g} m at rest, not a positive camber')
+        a, b = _every(model.A, model.B, steps)
+        design = cls(a, b * model.v_squared_slack, model.C[row] / camber, steps * model.dt,
+                     model.operating_v_squared / model.v_squared_slack)
+        radius = float(np.abs(np.linalg.eigvals(design.a)).max())
+        if radius >= 1.0:
+            raise BadInput(f'the model is unstable (spectral radius {radius:.6f}); identify it '
+                           'again with realisation.unstable_poles = reflect or a longer window')
+        if not design.static_gain > 0.0:
+            raise BadInput(f'the model says that camber falls with V^2 (gain '
+                           f'{design.static_gain:.3g}); identify it again')
+        return design
+
+    @property
+    def order(self) -> int:
+        """Return the number of states."""
+        return self.b.size
+
+    @cached_property
+    def steady(self) -> np.ndarray:
+        """The steady state (n,) for each unit of w - u0: (I - A)^-1 B."""
+        return np.linalg.solve(np.eye(self.order) - self.a, self.b)
+
+    @cached_property
+    def static_gain(self) -> float:
+        """G0 = C (I - A)^-1 B."""
+        return float(self.c @ self.steady)
+
+    def at_tension(self, ratio: float) -> 'Design':
+        """Return the model of the membrane under ``ratio`` times the tension at rest.
+
+        Poles exp(s T) move to exp(sqrt(ratio) s T), as the frequencies of a string do; the static
+        gain from w stays. Poles on the negative real axis, which no s describes, stay as well.
+        """
+        poles, modes = np.linalg.eig(self.a.astype(complex))
+        waves = ~((np.abs(poles.imag) < 1.0e-12) & (poles.real <= 0.0))
+        moved = poles.copy()
+        moved[waves] = np.exp(np.sqrt(ratio) * np.log(poles[waves]))
+        inlet = np.linalg.solve(modes, self.b) * (1.0 - moved) / (1.0 - poles)
+        return replace(self, a=((modes * moved) @ np.linalg.inv(modes)).real,
+                       b=(modes @ inlet).real)
+
+    def fundamental(self) -> 'Design':
+        """Return the oscillator with frequency and damping of the main pole and the same G0.
+
+        The main pole has the largest share of the static gain. Regulators designed on more than
+        that invert the lightly damped higher modes, whose frequencies move with the tension, and
+        fail at other voltages.
+        """
+        poles, modes = np.linalg.eig(self.a.astype(complex))
+        share = np.abs((self.c @ modes) * np.linalg.solve(modes, self.b) / (1.0 - poles))
+        share[poles.imag <= 0.0] = 0.0
+        if not share.any():
+            raise BadInput('the model has no oscillating mode; identify it again')
+        rate = np.log(poles[np.argmax(share)]) / self.dt
+        stiffness = abs(rate)**2
+        transition = linalg.expm(self.dt * np.array(
+            [[0.0, 1.0, 0.0], [-stiffness, 2.0 * rate.real, stiffness], [0.0, 0.0, 0.0]]))
+        return replace(self, a=transition[:2, :2], b=transition[:2, 2],
+                       c=np.array([self.static_gain, 0.0]))
+
+    @cached_property
+    def spectrum(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies (Hz) to Nyquist, fine about the modes, and the response there."""
+        frequency = _frequencies(self)
+        return frequency, self.response(frequency)
+
+    def response(self, frequency: np.ndarray) -> np.ndarray:
+        """Return C (zI - A)^-1 B at ``frequency`` (Hz, shape (m,)), complex (m,)."""
+        return frequency_response(self.a, self.b, self.c, 0.0, frequency, self.dt)
+
+
+def load(path: str, output: str, steps: int = 1) -> Design:
+    """Return the design model in the npz file ``path``; raise `BadInput` as `Design.of`."""
+    if not path:
+        raise BadInput('model is empty: this kind of controller needs the npz file of an '
+                       'identified model, as written by dewing identify and dewing tune')
+    return Design.of(reduced.load(path), output, steps)
+
+
+def frequency_response(a, b, c, d, frequency, dt: float) -> np.ndarray:
+    """Return c (zI - a)^-1 b + d for z = exp(2 pi i f dt), complex (m,)."""
+    z = np.exp(2j * np.pi * np.asarray(frequency) * dt)
+    resolvent = np.linalg.solve(z[:, None, None] * np.eye(len(b)) - a, b[:, None])
+    return (c @ resolvent)[:, 0] + d
+
+
+def _every(a: np.ndarray, b: np.ndarray, steps: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return A^n and (A^(n-1) + ... + I) B: the input is held over n steps."""
+    total, power = np.zeros_like(b), np.eye(len(b))
+    for _ in range(steps):
+        total += power @ b
+        power = a @ power
+    return power, total
+
+
+def _frequencies(design: Design) -> np.ndarray:
+    nyquist = 0.5 / design.dt
+    poles = np.log(np.linalg.eigvals(design.a).astype(complex)) / (2.0 * np.pi * design.dt)
+    spread = np.geomspace(1.0e-4, 0.3, 25)
+    local = [abs(pole) * (1.0 + sign * spread) for pole in poles if pole.imag > 0.0
+             for sign in (-1.0, 1.0)]
+    grid = np.concatenate([np.geomspace(0.1, nyquist, 500), *local])
+    return np.unique(grid[(grid > 0.0) & (grid <= nyquist)])
