@@ -9,13 +9,13 @@ import numpy as np
 import yaml
 
 from dewing_sim.errors import BadInput
-from dewing_sim.fluid.finite_volume.engine import FlowState
+from dewing_sim.fluid.engines import STATES
 from dewing_sim.parameters import Case, from_mapping, to_mapping
 from dewing_sim.structure.dynamics import Motion
 from dewing_sim.wing import State
 
 FORMAT = 1
-SECTIONS = {'flow': FlowState, 'motion': Motion}
+SECTIONS = ('flow', 'motion')
 
 
 def save(path: str | Path, state: State, case: Case) -> None:
@@ -48,11 +48,12 @@ def _read(path: str | Path) -> tuple[State, Case]:
             arrays = {name: file[name] for name in file.files}
         if arrays.get('format') != FORMAT:
             raise KeyError('format')
-        values = {name: _section(schema, name, arrays) for name, schema in SECTIONS.items()}
+        case = from_mapping(Case, yaml.safe_load(str(arrays['case'])))
+        values = {'flow': _section(STATES[case.numerics.engine], 'flow', arrays),
+                  'motion': _section(Motion, 'motion', arrays)}
         for field in dataclasses.fields(State):
             if field.name not in SECTIONS:
                 values[field.name] = arrays[field.name].item()
-        case = from_mapping(Case, yaml.safe_load(str(arrays['case'])))
     except FileNotFoundError:
         raise BadInput(f'{path}: no such file') from None
     except (OSError, ValueError, KeyError, EOFError) as error:

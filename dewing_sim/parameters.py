@@ -83,8 +83,9 @@ class Membrane:
 class Numerics:
     """How the equations are solved."""
 
-    engine: str = choice('flow solver', 'finite_volume')
-    grid: str = choice('flow grid preset', 'fast', 'standard', 'fine')
+    engine: str = choice('flow solver', 'finite_volume', 'conformal')
+    grid: str = choice(
+        'flow grid preset of the engine', 'fast', 'standard', 'fine', 'realtime', 'reference')
     time_step: float = real('s', 'time step dt', 1.0e-8, 1.0e-1)
     coupling_tolerance: float = real(
         '-', 'relative change of the membrane shape between coupling passes', 1.0e-12, 1.0e-1)

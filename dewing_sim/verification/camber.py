@@ -16,14 +16,16 @@ IDEAL = 'thin-aerofoil theory, 4 pi f'
 
 def runs(engine: str, quick: bool) -> dict[str, PlateRun]:
     """Return turned plates, a slightly and a strongly cambered one."""
-    turned = {'turned 0': PlateRun(engine, 'standard', 4.0, 20.0),
-              'turned 1': PlateRun(engine, 'standard', 3.0, 20.0, rotation=1.0)}
+    chosen = {'turned 0': PlateRun(engine, 'standard', 4.0, 20.0)}
+    if engine != 'conformal':       # whose map keeps the chord where it is
+        chosen['turned 1'] = PlateRun(engine, 'standard', 3.0, 20.0, rotation=1.0)
+        if not quick:
+            chosen['turned -1'] = PlateRun(engine, 'standard', 5.0, 20.0, rotation=-1.0)
     if quick:
-        return turned
-    chosen = turned | {
-        'turned -1': PlateRun(engine, 'standard', 5.0, 20.0, rotation=-1.0),
+        return chosen
+    chosen |= {
         'camber 2 %': PlateRun(engine, 'standard', 4.0, 20.0, camber=0.02),
-        'camber 10 %': PlateRun(engine, 'standard', 4.0, 40.0, camber=0.10, dt=0.002),
+        'camber 10 %': PlateRun(engine, 'standard', 4.0, 30.0, camber=0.10, dt=0.002),
         'camber 10 %, fine': PlateRun(engine, 'fine', 4.0, 30.0, camber=0.10, dt=0.002),
     }
     return chosen | {f'slope {reynolds:g}': PlateRun(
