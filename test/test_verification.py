@@ -18,6 +18,7 @@ from dewing_sim.verification.closed_forms import (
     sail_divergence,
     strip_added_mass,
 )
+from dewing_sim.verification.rigid_flow import PlateRun
 from dewing_sim.verification.signals import block_mean, harmonics, limit, richardson, ringing
 from dewing_sim.verification.study import Check, Study
 
@@ -71,6 +72,17 @@ def test_command_records_gates_and_fails_when_one_is_missed(
 def test_unusable_options_are_refused(option, capsys):
     assert main(['verify', *option]) == 2
     assert option[0] in capsys.readouterr().err
+
+
+def test_a_run_that_fails_is_a_missed_gate(monkeypatch):
+    coarse = PlateRun('finite_volume', 'fast', 12.0, 10.0, dt=0.1)
+    study = Study('broken', 'Broken', 'Text.', lambda engine, quick: {'too coarse': coarse},
+                  lambda engine, results: [])
+    monkeypatch.setattr(suite, 'STUDIES', (study,))
+    verification = suite.verify(['finite_volume'], jobs=1)
+    missed, = verification.missed
+    assert missed.name == 'Broken: failed runs'
+    assert missed.source.startswith('too coarse: the flow')
 
 
 def test_a_second_engine_is_compared_with_the_first():

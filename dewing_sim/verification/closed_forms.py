@@ -24,6 +24,19 @@ def wagner(s: np.ndarray) -> np.ndarray:
     return 1.0 - 0.165 * np.exp(-0.0455 * s) - 0.335 * np.exp(-0.3 * s)
 
 
+def oscillating_camber(amplitude: float, omega: float) -> complex:
+    """Return Cl of the camber ``amplitude`` exp(i omega t) of a parabola in ideal flow.
+
+    Added mass and Theodorsen's circulatory part (k = omega / 2):
+    (3 pi / 8) omega^2 a + 2 pi a (2 - i omega / 2) C(k).
+    """
+    from scipy.special import hankel2
+    first, zeroth = hankel2(1, 0.5 * omega), hankel2(0, 0.5 * omega)
+    theodorsen = first / (first + 1j * zeroth)
+    return complex(amplitude * (0.375 * np.pi * omega**2
+                                + 2.0 * np.pi * (2.0 - 0.5j * omega) * theodorsen))
+
+
 def _theta() -> np.ndarray:
     """Return the midpoints of [0, pi]; x = (1 - cos theta) / 2."""
     return np.pi * (np.arange(QUADRATURE) + 0.5) / QUADRATURE

@@ -78,7 +78,7 @@ def write(verification: Verification, folder: str | Path, overwrite: bool = Fals
     for study in verification.studies:
         if checks := verification.checks[study.name]:
             parts += [f'## {study.title}\n', f'{study.text}\n', markdown_table(checks), '']
-            if study.draw and not verification.quick:
+            if study.draw and verification.results[study.name] and not verification.quick:
                 image = _draw(study, verification, folder, overwrite)
                 parts.append(f'![{study.title}]({image.relative_to(folder).as_posix()})\n')
     with new_file(folder / PAGE, overwrite) as file:

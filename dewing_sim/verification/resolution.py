@@ -5,30 +5,29 @@
 import numpy as np
 
 from dewing_sim.verification.rigid_flow import PlateResult, PlateRun
-from dewing_sim.verification.signals import harmonics, richardson
+from dewing_sim.verification.signals import harmonics, richardson, whole_periods
 from dewing_sim.verification.study import Check, Study
 
 RATIO = np.sqrt(2.0)
 COARSENINGS = (RATIO**2, RATIO, 1.0, 1.0 / RATIO)
-TIME_STEPS = (0.008, 0.004, 0.002)
+TIME_STEPS = (0.004, 0.002, 0.001)
 EXTENTS = (25.0, 50.0, 100.0)
 OWN_GRIDS = ('fast', 'standard', 'fine')
 HALVED = 'Richardson extrapolation'
 
 
 def runs(engine: str, quick: bool) -> dict[str, PlateRun]:
-    """Return families that differ in one respect, or only two far fields in the quick suite."""
+    """Return families that differ in one respect, none in the quick suite."""
     if quick:
         return {}
-    chosen = {f'dt {dt:g}': PlateRun(engine, 'standard', 8.0, 80.0 if dt == 0.004 else 60.0,
-                                     dt=dt) for dt in TIME_STEPS}
+    chosen = {f'dt {dt:g}': PlateRun(engine, 'standard', 8.0, 40.0, dt=dt) for dt in TIME_STEPS}
     if engine != 'finite_volume':
         return chosen | {f'grid {name}': PlateRun(engine, name, 4.0, 40.0) for name in OWN_GRIDS}
     chosen |= {f'far field {extent:g}': PlateRun(engine, 'standard', 4.0, 20.0, extent=extent)
                for extent in EXTENTS}
     return chosen | {f'grid {factor:.3g}': PlateRun(
-        engine, 'standard', 4.0, 20.0 if factor < 1.0 else 20.0, dt=0.004 * min(1.0, factor),
-        coarsening=factor) for factor in COARSENINGS}
+        engine, 'standard', 4.0, 20.0, dt=0.004 * min(1.0, factor), coarsening=factor)
+        for factor in COARSENINGS}
 
 
 def checks(engine: str, results: dict[str, PlateResult]) -> list[Check]:
@@ -63,13 +62,14 @@ def _time_step(engine: str, results: dict[str, PlateResult]) -> list[Check]:
     rows = []
     for dt in TIME_STEPS:
         result = results[f'dt {dt:g}']
-        late = result.cl[result.late]
-        rows.append((late.mean(), late.std(), harmonics(late, result.dt).frequency))
+        frequency = harmonics(result.cl[result.late], result.dt).frequency
+        late = whole_periods(result.cl[result.late], result.dt, frequency)
+        rows.append((late.mean(), late.std(), frequency))
     names = (('mean Cl', 0.02), ('rms of Cl', 0.02), ('Strouhal number', 0.02))
     found = []
     for (name, gate), values in zip(names, zip(*rows)):
         best = richardson(*values, 2.0)
-        found.append(Check(f'plate 8 deg, time step: {name}', engine, values[1], best.value,
+        found.append(Check(f'plate 8 deg, time step: {name}', engine, values[0], best.value,
                            f'{HALVED}; 2 % is the criterion of the paper', gate))
     return found
 
@@ -94,5 +94,6 @@ STUDY = Study(
     'Grids are similar: every cell of the standard grid is multiplied by 2, sqrt 2, 1 and '
     '1/sqrt 2. The solution is singular at the leading edge, so no scheme shows its formal order '
     'there. The far field carries the circulation of wing and wake, hence its small influence. '
-    'The time step is varied at 8 degrees, where it matters.',
+    'The time step is 0.004, 0.002 and 0.001 at 8 degrees, where it matters; 0.008 diverges there '
+    'on the standard grid.',
     runs, checks, draw)

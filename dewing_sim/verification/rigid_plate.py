@@ -9,7 +9,7 @@ import numpy as np
 
 from dewing_sim.verification.closed_forms import plate_drag
 from dewing_sim.verification.rigid_flow import PlateResult, PlateRun
-from dewing_sim.verification.signals import harmonics
+from dewing_sim.verification.signals import harmonics, whole_periods
 from dewing_sim.verification.study import Check, Study
 
 REFERENCE = Path(__file__).parents[2] / 'test/reference/flat_plate_re2500_alpha4_dcp.csv'
@@ -55,8 +55,9 @@ def _attached(engine: str, result: PlateResult) -> list[Check]:
 
 
 def _shedding(engine: str, result: PlateResult) -> list[Check]:
-    cl, cd = result.cl[result.late], result.cd[result.late]
-    lines = harmonics(cl, result.dt)
+    lines = harmonics(result.cl[result.late], result.dt)
+    cl, cd = (whole_periods(signal[result.late], result.dt, lines.frequency)
+              for signal in (result.cl, result.cd))
     power = (lines.amplitude / lines.amplitude[0])**2
     return [
         Check('plate 8 deg: mean Cl', engine, cl.mean(), 0.94, f'{HDG}, +- 0.01', 0.02),

@@ -36,6 +36,12 @@ def harmonics(signal: np.ndarray, dt: float, count: int = 4) -> Harmonics:
     return Harmonics(float(found.x), _fit(signal, dt, found.x, count)[0])
 
 
+def whole_periods(signal: np.ndarray, dt: float, frequency: float) -> np.ndarray:
+    """Return the last whole periods of ``signal``, at least one."""
+    periods = max(1, int(len(signal) * dt * frequency))
+    return signal[len(signal) - round(periods / (frequency * dt)):]
+
+
 def _fit(signal: np.ndarray, dt: float, frequency: float, count: int) -> tuple[np.ndarray, float]:
     """Return the amplitudes of the harmonics and the squared residual."""
     phase = np.outer(2.0 * np.pi * frequency * dt * np.arange(len(signal)),

@@ -5,10 +5,11 @@
 import multiprocessing
 import os
 import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
+from dewing_sim.errors import RunFailed
 from dewing_sim.verification import (
     added_mass,
     camber,
@@ -55,8 +56,8 @@ def verify(engines: Sequence[str], quick: bool = False, jobs: int | None = None,
            progress: Callable | None = None) -> Verification:
     """Run every study on every engine; ``progress(done, total)`` counts computations.
 
-    ``jobs`` processes work at once, by default as many as there are idle cores. A run that fails
-    raises its `RunFailed`.
+    ``jobs`` processes work at once, by default as many as there are idle cores. A study of which
+    a run fails is a missed gate of its own.
     """
     started = time.perf_counter()
     plan = {(study.name, engine): study.runs(engine, quick)
@@ -69,10 +70,23 @@ def verify(engines: Sequence[str], quick: bool = False, jobs: int | None = None,
         for engine in engines:
             if runs := plan[study.name, engine]:
                 answers = {name: done[run] for name, run in runs.items()}
+                if failed := failures(study, engine, answers):
+                    found.append(failed)
+                    continue
                 results[study.name][engine] = answers
                 found += study.checks(engine, answers)
         checks[study.name] = found + between_engines(found)
     return Verification(STUDIES, checks, results, quick, time.perf_counter() - started)
+
+
+def failures(study: Study, engine: str, answers: dict[str, Any]) -> Check | None:
+    """Return the missed check of a study some of whose runs failed."""
+    failed = {name: answer for name, answer in answers.items() if isinstance(answer, RunFailed)}
+    if not failed:
+        return None
+    name, error = next(iter(failed.items()))
+    return Check(f'{study.title}: failed runs', engine, len(failed), 0.0, f'{name}: {error}',
+                 0.0, 1.0)
 
 
 def between_engines(checks: list[Check]) -> list[Check]:
@@ -89,7 +103,7 @@ def between_engines(checks: list[Check]) -> list[Check]:
 
 def execute(runs: set[Run], jobs: int | None = None, progress: Callable | None = None,
             ) -> dict[Run, Any]:
-    """Return the result of each run; the most expensive ones start first."""
+    """Return the result, or the `RunFailed`, of each run; the most expensive ones start first."""
     ordered = sorted(runs, key=lambda run: (-run.cost, repr(run)))
     results: dict[Run, Any] = {}
     for name in SINGLE_THREAD:      # read when a new process loads its libraries
@@ -99,13 +113,20 @@ def execute(runs: set[Run], jobs: int | None = None, progress: Callable | None =
         futures = {pool.submit(run): run for run in ordered}
         try:
             for future in as_completed(futures):
-                results[futures[future]] = future.result()
+                results[futures[future]] = _result(future)
                 if progress:
                     progress(len(results), len(ordered))
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return results
+
+
+def _result(future: Future) -> Any:
+    try:
+        return future.result()
+    except RunFailed as error:
+        return error
 
 
 def idle_cores() -> int:
