@@ -25,6 +25,7 @@ from dewing_sim.fluid.conformal.pressure import WallPressure, force, lamb_vector
 
 LARGEST_SLIP = 10.0     # free-stream speeds shed in one step beyond which a run has diverged
 NEGLIGIBLE_SLIP = 1.0e-6
+PINNED = 1.0e-9         # chords
 SHEDDING_PASSES = 4
 
 
@@ -102,16 +103,16 @@ class Conformal:
     def predict(self, state: FlowState, wall: Wall) -> Prediction:
         """Advance vorticity and stream function with the wall at its new place and velocity."""
         _require_pinned(wall)
-        around = self.geometry.surroundings(wall, state.height, state.map, state.map_before)
+        around = self.geometry.follow(wall, state.height, state.map, state.map_before)
         w, outflow = self._transport(state, around)
         circulation = state.circulation + self.dt * outflow
-        u_wall, v_wall = self.geometry.wall_fluxes(around, wall.velocity)
+        u_wall, v_wall = around.wall_fluxes(wall.velocity)
         w, q, psi = self._close(w, around, u_wall, v_wall, circulation)
         pressure = self._pressure(state, wall, around, w, psi, u_wall, v_wall)
         after = FlowState(w, q, psi, state.w, state.q, state.psi,
                           around.map.shape, around.map.edges, state.shape, state.edges,
                           pressure, wall.height, wall.velocity, state.velocity, circulation)
-        return Prediction(wall, self.geometry.jump(around.map, pressure), (after, around))
+        return Prediction(wall, around.jump(pressure), (after, around))
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
         """Complete the step: the wall velocity that the coupling found acts by the added mass."""
@@ -119,7 +120,7 @@ class Conformal:
         change = velocity - prediction.wall.velocity
         if not change.any():
             return after
-        acceleration = 1.5 / self.dt * self.geometry.wall_fluxes(around, change)[1]
+        acceleration = 1.5 / self.dt * around.wall_fluxes(change)[1]
         pressure = after.pressure + self.wall_pressure.added_mass(acceleration)
         return replace(after, pressure=pressure, velocity=velocity)
 
@@ -174,9 +175,9 @@ class Conformal:
         v, u = self._fluxes(psi, around.map.scale)
         acceleration = (3.0 * wall.velocity - 4.0 * s.velocity + s.velocity_before
                         ) / (2.0 * self.dt)
-        flux = self.geometry.wall_fluxes(around, acceleration)[1]
+        flux = around.wall_fluxes(acceleration)[1]
         head = self.wall_pressure(w, lamb_vector(w, v, u, v_wall, u_wall), flux)
-        return head - 0.5 * self.geometry.on_nodes(around.map, wall.velocity)**2
+        return head - 0.5 * around.on_nodes(wall.velocity)**2
 
     def _fluxes(self, psi: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarray]:
         return transport.fluxes(psi, 2.0 * scale * self._sinh_face, self._sin_corner,
@@ -184,11 +185,9 @@ class Conformal:
 
     def _flat_resistance(self) -> np.ndarray:
         """Return 3 / (2 dt) times the added mass of the flat plate between its columns."""
-        flat = self.geometry.mapping.flat()
-        slope = self.geometry.mapping.wall(flat)[1]
-        columns = np.eye(len(self.columns) - 1)
-        jumps = [self.geometry.jump(flat, self.wall_pressure.added_mass(
-            self.geometry.on_nodes(flat, column) * slope.imag)) for column in columns]
+        flat = self.geometry.at_rest(self.geometry.mapping.flat())
+        jumps = [flat.jump(self.wall_pressure.added_mass(flat.wall_fluxes(column)[1]))
+                 for column in np.eye(len(self.columns) - 1)]
         return -1.5 / self.dt * np.array(jumps).T
 
 
@@ -202,5 +201,6 @@ def _fastest(slip: np.ndarray) -> float:
 
 
 def _require_pinned(wall: Wall) -> None:
-    if wall.height[0] or wall.height[-1] or any(wall.edge_velocity):
+    ends = (wall.height[0], wall.height[-1], *wall.edge_velocity)
+    if max(map(abs, ends)) > PINNED:
         raise BadInput('the conformal engine needs a membrane whose edges stay at y = 0')

@@ -46,8 +46,7 @@ class Mapping:
         self._sin = np.sin(np.outer(k, grid.xi))
         self._exp = np.exp(-np.outer(grid.eta, k) - 0.5j * k * grid.step)
         self._k = k
-        strip = grid.eta[:, None] + 1j * grid.xi
-        self._sinh, self._cosh = np.sinh(strip), np.cosh(strip)
+        self._axes = (np.sinh(grid.eta), np.cosh(grid.eta), np.cos(grid.xi), np.sin(grid.xi))
 
     def flat(self) -> Map:
         """Return the map of a flat plate."""
@@ -69,27 +68,71 @@ class Mapping:
                                'for this engine')
         return Map(shape, edges)
 
-    def slope(self, m: Map) -> np.ndarray:
-        """Return z_zeta (rows, n) on the nodes."""
-        return 2.0 * m.scale * self._sinh - self._series(self._k * m.shape)
+    def metric(self, m: Map) -> np.ndarray:
+        """Return h^2 = |z_zeta|^2 (rows, n) on the nodes."""
+        return _metric(self._series(np.array([self._k * m.shape]))[0], m.scale, *self._axes)
 
-    def rate(self, scale: float, shape: np.ndarray) -> np.ndarray:
-        """Return z_t (rows, n) for the rates of a and of b_k."""
-        return 2.0 * scale * self._cosh + self._series(shape)
+    def metric_and_flux(self, m: Map, scale: float, shape: np.ndarray,
+                        ) -> tuple[np.ndarray, np.ndarray]:
+        """Return h^2 and the grid flux z_t conj(z_zeta) for the rates of a and of b_k."""
+        slope, rate = self._series(np.array([self._k * m.shape, shape]))
+        return _metric_and_flux(slope, rate, m.scale, scale, *self._axes)
 
     def wall(self, m: Map) -> tuple[np.ndarray, np.ndarray]:
         """Return z and z_zeta (n,) on the membrane."""
-        n, xi = len(self.grid.xi), self.grid.xi
-        place = fft.fft(m.shape * self._exp[0], n)
-        slope = fft.fft(self._k * m.shape * self._exp[0], n)
-        return (2.0 * m.scale * np.cos(xi) + place, 2.0j * m.scale * np.sin(xi) - slope)
+        modes = np.array([m.shape, self._k * m.shape])
+        place, slope = fft.fft(modes * self._exp[0], len(self.grid.xi), axis=1)
+        cos, sin = self._axes[2:]
+        return 2.0 * m.scale * cos + place, 2.0j * m.scale * sin - slope
 
     def angles(self, m: Map) -> np.ndarray:
         """Return theta (n,) of the nodes: x = (1 + cos theta) / 2, upper side below pi."""
         return _angles(_abscissa(m.shape, m.edges, self._cos, self._sin), m.edges, self.grid.xi)
 
     def _series(self, modes: np.ndarray) -> np.ndarray:
-        return fft.fft(self._exp * modes, len(self.grid.xi), axis=1)
+        """Return sum_k modes_k exp(-k zeta) (sets, rows, n) for each set of modes (sets, k)."""
+        spectrum = _spectra(self._exp, modes, len(self.grid.xi))
+        return fft.fft(spectrum, axis=2, overwrite_x=True)
+
+
+@kernel
+def _spectra(exp, modes, n):
+    rows, count = exp.shape
+    out = np.zeros((modes.shape[0], rows, n), dtype=np.complex128)
+    for m in range(modes.shape[0]):
+        for j in range(rows):
+            for k in range(count):
+                out[m, j, k] = exp[j, k] * modes[m, k]
+    return out
+
+
+@kernel
+def _metric(slope, scale, sinh, cosh, cos, sin):
+    """Return |2 a sinh(zeta) - slope|^2."""
+    rows, n = slope.shape
+    h2 = np.empty((rows, n))
+    for j in range(rows):
+        s, c = 2.0 * scale * sinh[j], 2.0 * scale * cosh[j]
+        for i in range(n):
+            x, y = s * cos[i] - slope[j, i].real, c * sin[i] - slope[j, i].imag
+            h2[j, i] = x * x + y * y
+    return h2
+
+
+@kernel
+def _metric_and_flux(slope, rate, scale, scale_rate, sinh, cosh, cos, sin):
+    """Return |2 a sinh(zeta) - slope|^2, (2 a_t cosh(zeta) + rate) conj(2 a sinh(zeta) - slope)."""
+    rows, n = slope.shape
+    h2, flux = np.empty((rows, n)), np.empty((rows, n), dtype=np.complex128)
+    for j in range(rows):
+        s, c = 2.0 * scale * sinh[j], 2.0 * scale * cosh[j]
+        s_rate, c_rate = 2.0 * scale_rate * sinh[j], 2.0 * scale_rate * cosh[j]
+        for i in range(n):
+            x, y = s * cos[i] - slope[j, i].real, c * sin[i] - slope[j, i].imag
+            u, v = c_rate * cos[i] + rate[j, i].real, s_rate * sin[i] + rate[j, i].imag
+            h2[j, i] = x * x + y * y
+            flux[j, i] = complex(u * x + v * y, v * x - u * y)
+    return h2, flux
 
 
 @kernel
