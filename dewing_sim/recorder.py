@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -33,14 +32,6 @@ class RecorderSettings:
     output: str = text('MCAP file to write; it must not exist')
 
 
-class Polled(CallbackGroup):
-    """Subscriptions that no executor waits for."""
-
-    def can_execute(self, entity) -> bool:
-        """Leave every message where it is."""
-        return False
-
-
 class RecorderNode(Node):
     """Subscribes to topics as they appear and writes what they carry, unread, to the bag."""
 
@@ -53,7 +44,9 @@ class RecorderNode(Node):
         self.exit_status: int | None = None
         self.reason = ''
         self.bag = bag.BagWriter(self.settings.output)
-        self._polled = Polled()
+        self._listener = Node(      # in no executor
+            'recorder_queues', namespace=self.get_namespace(), context=self.context,
+            use_global_arguments=False, enable_rosout=False, start_parameter_services=False)
         self._topics: dict[str, Any] = {}
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(DISCOVERY_PERIOD, self._discover, clock=steady)
@@ -74,9 +67,9 @@ class RecorderNode(Node):
         self.bag.add_topic(topic, kind, dict(
             reliability=offered.reliability.name.lower(),
             durability=offered.durability.name.lower()))
-        self._topics[topic] = self.create_subscription(
+        self._topics[topic] = self._listener.create_subscription(
             getattr(import_module(f'{package}.msg'), name), topic, lambda message: None,
-            qos.complete(offered), raw=True, callback_group=self._polled)
+            qos.complete(offered), raw=True)
 
     def _write(self):
         self._guarded(self._write_waiting)
@@ -102,6 +95,11 @@ class RecorderNode(Node):
             except OSError as error:
                 self.exit_status = 1
                 self.reason = f'{self.settings.output}: recording stopped ({error.strerror})'
+
+    def destroy_node(self):
+        """Destroy the queues too."""
+        self._listener.destroy_node()
+        super().destroy_node()
 
     def interrupt(self):
         """Write what has come in and close the bag."""
