@@ -44,26 +44,27 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     the load.  Raises `NotConverged` after ``passes``.
     """
     position = motion.predict(dt)
-    velocity = motion.rate(position, dt)
+    wall = wall_of(fluid.columns, structure.surface(position),
+                   structure.surface(motion.rate(position, dt)))
     for iteration in range(1, passes + 1):
-        prediction = fluid.predict(flow, wall_of(fluid.columns, structure.surface(position),
-                                                 structure.surface(velocity)))
+        prediction = fluid.predict(flow, wall)
         load = PressureLoad(fluid, structure, prediction, wall_pressure)
         moved = dynamics.advance(structure, motion, dt, v_squared, load, operator, damping,
                                  guess=position)
-        residual = shape_change(structure.surface(moved.position), structure.surface(position))
-        position, velocity = moved.position, moved.velocity
+        position = moved.position
+        before, wall = wall, wall_of(fluid.columns, structure.surface(position),
+                                     structure.surface(moved.velocity))
+        residual = shape_change(wall.height, before.height)
         if residual <= tolerance:
-            return Coupled(fluid.correct(prediction, load.wall_velocity(position, velocity)),
-                           moved, iteration, residual)
+            return Coupled(fluid.correct(prediction, wall.velocity), moved, iteration, residual)
     raise NotConverged(f'coupling: the shape still changes by {residual:.3g} of its deflection '
                        f'after {passes} passes (tolerance {tolerance:.3g}); '
                        'reduce the time step or raise coupling_iterations')
 
 
 def shape_change(after: np.ndarray, before: np.ndarray) -> float:
-    """Return the largest change of position relative to the largest deflection."""
-    return float(np.abs(after - before).max() / max(np.abs(after[:, 1]).max(), FLAT))
+    """Return the largest change of height relative to the largest deflection."""
+    return float(np.abs(after - before).max() / max(np.abs(after).max(), FLAT))
 
 
 def wall_of(columns: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> Wall:
@@ -106,7 +107,7 @@ def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
     columns = np.array([column_velocity(fluid.columns, line, motion) for motion in unit])
     basis = np.array([structure.spread(column.reshape(line.shape)).ravel()[structure.free]
                       for column in columns.T])
-    return LowRank(basis, np.diff(fluid.columns)[:, None] * fluid.resistance)
+    return LowRank(np.ascontiguousarray(basis.T), np.diff(fluid.columns)[:, None] * fluid.resistance)
 
 
 @numba.njit(cache=True)

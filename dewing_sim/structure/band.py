@@ -43,38 +43,48 @@ def factorise(band):
 
 @numba.njit(cache=True)
 def substitute(factors, right):
-    """Return the solution for every row of ``right`` (k, m)."""
+    """Return the solutions (m, k) for the columns of ``right`` (m, k)."""
     m, width = factors.shape[0], factors.shape[1] - 1
     solution = right.copy()
-    for row in range(right.shape[0]):
-        x = solution[row]
-        for column in range(m):
-            for i in range(1, min(width, m - 1 - column) + 1):
-                x[column + i] -= factors[column, i] * x[column]
-        for column in range(m - 1, -1, -1):
-            value = x[column] / factors[column, 0]
-            for i in range(1, min(width, m - 1 - column) + 1):
-                value -= factors[column, i] * x[column + i]
-            x[column] = value
+    for column in range(m):
+        for i in range(1, min(width, m - 1 - column) + 1):
+            factor = factors[column, i]
+            for k in range(right.shape[1]):
+                solution[column + i, k] -= factor * solution[column, k]
+    for column in range(m - 1, -1, -1):
+        pivot = factors[column, 0]
+        for k in range(right.shape[1]):
+            solution[column, k] /= pivot
+        for i in range(1, min(width, m - 1 - column) + 1):
+            factor = factors[column, i]
+            for k in range(right.shape[1]):
+                solution[column, k] -= factor * solution[column + i, k]
     return solution
 
 
 @numba.njit(cache=True)
-def _correct(solution, basis, update):
-    """Return solution - update^T basis solution, all of the low rank's rows (k, m)."""
+def _correct(solution, basis, core, solved):
+    """Return solution - solved core basis solution, with basis and solved (m, k)."""
+    share = np.zeros(core.shape[0])
+    for i in range(solution.size):
+        for k in range(share.size):
+            share[k] += basis[i, k] * solution[i]
+    weight = np.zeros(share.size)
+    for i in range(share.size):
+        for k in range(share.size):
+            weight[i] += core[i, k] * share[k]
     result = solution.copy()
-    for k in range(basis.shape[0]):
-        share = 0.0
-        for i in range(solution.size):
-            share += basis[k, i] * solution[i]
-        for i in range(solution.size):
-            result[i] -= share * update[k, i]
+    for i in range(solution.size):
+        value = 0.0
+        for k in range(weight.size):
+            value += solved[i, k] * weight[k]
+        result[i] -= value
     return result
 
 
 @dataclass(frozen=True, eq=False)
 class LowRank:
-    """The matrix basis^T weight basis with ``basis`` (k, m), ``weight`` (k, k)."""
+    """The matrix basis weight basis^T with ``basis`` (m, k), ``weight`` (k, k)."""
 
     basis: np.ndarray
     weight: np.ndarray
@@ -82,11 +92,7 @@ class LowRank:
     @classmethod
     def zero(cls, m: int) -> 'LowRank':
         """Return the zero matrix of size m."""
-        return cls(np.zeros((0, m)), np.zeros((0, 0)))
-
-    def full(self) -> np.ndarray:
-        """Return the matrix (m, m)."""
-        return self.basis.T @ self.weight @ self.basis
+        return cls(np.zeros((m, 0)), np.zeros((0, 0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,21 +100,22 @@ class Inverse:
     """The inverse of a symmetric band plus a multiple of a `LowRank`."""
 
     factors: np.ndarray
-    basis: np.ndarray
-    update: np.ndarray          # (k, m)
+    basis: np.ndarray           # (m, k)
+    core: np.ndarray            # (k, k)
+    solved: np.ndarray          # (m, k), band^-1 basis
 
     @classmethod
     def of(cls, band: np.ndarray, low_rank: LowRank, factor: float) -> 'Inverse':
         """Return the inverse of ``band`` (2 w + 1, m) + ``factor`` * ``low_rank``."""
         factors = factorise(band)
-        basis = np.ascontiguousarray(low_rank.basis)
-        solved = substitute(factors, basis)                 # rows are band^-1 basis^T
-        core = np.eye(len(basis)) + factor * (low_rank.weight @ (basis @ solved.T))
-        with np.errstate(all='ignore'):
-            update = np.linalg.solve(core, factor * (low_rank.weight @ solved))
-        return cls(factors, basis, np.ascontiguousarray(update))
+        basis, weight = low_rank.basis, factor * low_rank.weight
+        solved = substitute(factors, basis)
+        core = np.eye(len(weight)) + weight @ (basis.T @ solved)
+        return cls(factors, basis, np.linalg.solve(core, weight), solved)
 
     def __call__(self, vector: np.ndarray) -> np.ndarray:
         """Return the product with ``vector`` (m,)."""
-        solution = substitute(self.factors, vector.reshape(1, -1))[0]
-        return _correct(solution, self.basis, self.update) if len(self.basis) else solution
+        solution = substitute(self.factors, vector.reshape(-1, 1)).ravel()
+        if not len(self.core):
+            return solution
+        return _correct(solution, self.basis, self.core, self.solved)

@@ -145,13 +145,16 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
     ``load(position, velocity)`` returns the external nodal forces (nodes, 2), affine in velocity
     with the slope -``operator.resistance``. ``damping`` is mass-proportional (1/time). Iterates
     from ``guess`` (`Motion.predict` by default) until the largest correction falls below
-    ``tolerance`` chords; where that is slow, as after a jump of voltage, by Newton's method from
-    the present position, if necessary in several shares of the imbalance there. Raises `Slack`,
-    `Diverged` or `NotConverged`.
+    ``tolerance`` chords; where that is slow with ``operator``, with a fresh one; and where the
+    guess is poor, as after a jump of voltage, by Newton's method from the present position, if
+    necessary in several shares of the imbalance there. Raises `Slack`, `Diverged` or
+    `NotConverged`.
     """
     step = _Step(structure, motion, dt, v_squared, load, operator, damping, tolerance)
     start = motion.predict(dt) if guess is None else guess
-    position = step.by_chords(start)
+    position = step.by_chords(start, operator.inverse)
+    if position is None:
+        position = step.by_chords(start, None)
     if position is None:
         position = march(step.by_newton, motion.position, SMALLEST_SHARE)
     structure.require_taut(position, v_squared)
@@ -184,12 +187,16 @@ class _Step:
             self.dt, self.damping, self.structure.internal_force(position, self.v_squared),
             self.load(position, velocity)).reshape(-1)[self.structure.free]
 
-    def by_chords(self, start: np.ndarray) -> np.ndarray | None:
-        """Return the position after iterations with the operator, or None if they are slow."""
+    def by_chords(self, start: np.ndarray, inverse: Inverse | None) -> np.ndarray | None:
+        """Return the position after iterations with one inverse, or None if they are slow.
+
+        Without ``inverse`` it is made at ``start``.
+        """
         position, previous = np.array(start), np.inf
         for _ in range(ITERATIONS):
             try:
-                correction = self.operator.inverse(self.residual(position))
+                inverse = inverse or self.inverse(start, self.motion.position)
+                correction = inverse(self.residual(position))
             except Diverged:
                 return None
             size = np.abs(correction).max()
@@ -204,12 +211,16 @@ class _Step:
     def by_newton(self, start: np.ndarray, share: float) -> np.ndarray:
         """Return the position where ``share`` of the imbalance of the present one is gone."""
         held = (1.0 - share) * self.residual(self.motion.position) if share < 1.0 else 0.0
-        position, before = start, None
+        position, before, inverse, previous = start, None, self.inverse(start), np.inf
         for iteration in range(ITERATIONS):
             with np.errstate(invalid='ignore'):
                 residual = self.residual(position) - held
-            correction = self.inverse(position, before)(residual)
+            correction = inverse(residual)
             size = np.abs(correction).max()
+            if size > max(previous / SHRINKAGE, self._accuracy):
+                inverse = self.inverse(position, before)
+                correction = inverse(residual)
+                size = np.abs(correction).max()
             if not np.isfinite(size):
                 raise Diverged(f'structure: non-finite residual or correction in iteration '
                                f'{iteration}; check the load or reduce the time step',
@@ -218,6 +229,7 @@ class _Step:
             position.reshape(-1)[self.structure.free] -= correction
             if size <= self._accuracy:
                 return position
+            previous = size
         self.structure.require_taut(position, self.v_squared)
         raise NotConverged(f'structure: largest correction {size / self.structure.chord:.3g} '
                            f'chords, residual {np.abs(residual).max():.3g} after {ITERATIONS} '

@@ -13,7 +13,8 @@ from dewing_sim.structure.solid_element import (
     GAUSS,
     NODES,
     condense,
-    derivatives,
+    gradient,
+    hessian,
     measures,
     relax,
     second_order_area,
@@ -69,9 +70,8 @@ def respond(position, length, height, lateral, field, mu, jm, bulk, eps):
         a, b, status = relax(strains, lateral, field, mu, jm, bulk, eps)
         if status != BALANCED:
             return force, tension, thinning, status, k
-        gradient, _ = derivatives(strains, a, b, lateral, field, mu, jm, bulk, eps, False,
-                                  0.0)
-        slope = shape_gradient(z, strains, gradient, length[k], height)
+        by = gradient(strains, a, b, lateral, field, mu, jm, bulk, eps)
+        slope = shape_gradient(z, strains, by, length[k], height)
         tension[k] = math.copysign(height / lateral * math.hypot(slope[0], slope[1]),
                                    slope[0] * z[0] + slope[1] * z[1])
         thinning[k] = strains[2] / math.sqrt(strains[0])
@@ -87,6 +87,7 @@ def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equat
     ``equation`` (4 (n+1),) numbers the free coordinates and is negative at pins. ``before`` is
     the position from which Newton's last step came, or ``position`` for the exact tangent.
     """
+    inner, work = np.empty((7, 7)), np.zeros((18, 5))
     for k in range(length.size):
         z = shape(position, k, length[k], height)
         strains = measures(z, length[k], height)
@@ -94,10 +95,10 @@ def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equat
         if status != BALANCED:
             return status, k
         excess = second_order_area(z, shape(before, k, length[k], height))
-        gradient, hessian = derivatives(strains, a, b, lateral, field, mu, jm, bulk, eps, True,
-                                        excess)
-        condense(hessian)
-        curvature = shape_hessian(z, strains, gradient, hessian, length[k], height)
+        by = gradient(strains, a, b, lateral, field, mu, jm, bulk, eps)
+        hessian(strains, a, b, lateral, field, mu, jm, bulk, eps, excess, inner, work)
+        condense(inner)
+        curvature = shape_hessian(z, strains, by, inner, length[k], height)
         add_stiffness(band, curvature, k, length[k], height, lateral, equation)
     return BALANCED, -1
 

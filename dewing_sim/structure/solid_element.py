@@ -29,6 +29,7 @@ from dewing_sim.structure.material import Slopes, modulus, slopes, stress
 BALANCED, LOCKED, INVERTED, UNBALANCED = 0, 1, 2, 3
 GAUSS = math.sqrt(1.0 / 3.0)
 _CORRECTIONS = 25
+_LAST_CORRECTION = 1.0e-6       # Newton's next would be about its square
 # Coefficients of b0, t0, b1, t1 in m L, n H, g.
 NODES = np.array([[-0.5, -0.5, 0.5, 0.5], [-0.5, 0.5, -0.5, 0.5], [0.5, -0.5, -0.5, 0.5]])
 
@@ -90,7 +91,7 @@ def relax(strains, lateral, field, mu, jm, bulk, eps):
         da = (hab * rb - hbb * ra) / determinant
         db = (hab * ra - haa * rb) / determinant
         a, b = a + da, b + db
-        if abs(da) + abs(db) < 1.0e-9:
+        if abs(da) + abs(db) < _LAST_CORRECTION:
             return a, b, BALANCED
     return a, b, UNBALANCED
 
@@ -115,86 +116,108 @@ def _relieved(s, pressure):
 
 
 @numba.njit(cache=True)
-def derivatives(strains, a, b, lateral, field, mu, jm, bulk, eps, curved, excess):
-    """Return gradient (7,) and Hessian (7, 7) of the mean energy in A, B, D, p, q, a, b.
-
-    The Hessian is zero unless ``curved``. It takes the pressure of the volume that D - ``excess``
-    makes: zero for the exact Hessian, see `second_order_area` for Newton's method.
-    """
+def gradient(strains, a, b, lateral, field, mu, jm, bulk, eps):
+    """Return the derivatives of the mean energy by A, B, D, p, q, where a and b are relaxed."""
     sa, sb, sd, p, q = strains
-    gradient, hessian = np.zeros(7), np.zeros((7, 7))
-    f, c, y = np.zeros(5), np.zeros(5), np.zeros(5)
-    f_both, c_both, y_both = np.zeros((5, 5)), np.zeros((5, 5)), np.zeros((5, 5))
     squared = lateral * lateral * field
-    # Coordinates s1, s2, A, B, D at a point; the first two belong to p, a and to q, b.
-    first, second = np.array([3, 4, 0, 1, 2]), np.array([5, 6, 0, 1, 2])
-    share, other = np.ones(5), np.zeros(5)
+    by_a, by_b, by_d, by_p, by_q = 0.0, 0.0, 0.0, 0.0, 0.0
     for point in range(4):
         xi = GAUSS if point & 1 else -GAUSS
         eta = GAUSS if point & 2 else -GAUSS
-        share[0], other[0], share[1], other[1] = eta, xi, xi, eta
+        s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
+        area = lateral * s1 * s2
+        s = slopes(s1 * s1 * sa + s2 * s2 * sb + lateral * lateral, area * sd,
+                   squared * s1 * s1 * sa, mu, jm, bulk, eps)
+        by_a += 0.125 * s1 * s1 * stress(s, 1.0, 0.0, squared)
+        by_b += 0.125 * s2 * s2 * s.f
+        by_d += 0.25 * area * s.c
+        by_p += 0.25 * eta * stress(s, s1 * sa, lateral * s2 * sd, squared * s1 * sa)
+        by_q += 0.25 * xi * stress(s, s2 * sb, lateral * s1 * sd, 0.0)
+    return by_a, by_b, by_d, by_p, by_q
+
+
+@numba.njit(cache=True)
+def hessian(strains, a, b, lateral, field, mu, jm, bulk, eps, excess, result, work):
+    """Fill ``result`` (7, 7) with the Hessian of the mean energy in A, B, D, p, q, a, b.
+
+    It takes the pressure of the volume that D - ``excess`` makes: zero for the exact Hessian, see
+    `second_order_area` for Newton's method. ``work`` (18, 5) is zero or has served here before.
+    """
+    sa, sb, sd, p, q = strains
+    result[:] = 0.0
+    # Rows of first derivatives by s1, s2, A, B, D at a point, and of second ones.
+    f, c, y, f_both, c_both, y_both = (work[0], work[1], work[2], work[3:8], work[8:13],
+                                       work[13:18])
+    squared = lateral * lateral * field
+    for point in range(4):
+        xi = GAUSS if point & 1 else -GAUSS
+        eta = GAUSS if point & 2 else -GAUSS
         s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
         area = s1 * s2 * lateral
         f[0], f[1], f[2], f[3] = s1 * sa, s2 * sb, 0.5 * s1 * s1, 0.5 * s2 * s2
         c[0], c[1], c[4] = lateral * s2 * sd, lateral * s1 * sd, area
         y[0], y[2] = squared * s1 * sa, 0.5 * squared * s1 * s1
+        f_both[0, 0], f_both[1, 1], f_both[0, 2], f_both[1, 3] = sa, sb, s1, s2
+        c_both[0, 1], c_both[0, 4], c_both[1, 4] = lateral * sd, lateral * s2, lateral * s1
+        y_both[0, 0], y_both[0, 2] = squared * sa, squared * s1
         s = slopes(s1 * s1 * sa + s2 * s2 * sb + lateral * lateral, area * sd,
                    squared * s1 * s1 * sa, mu, jm, bulk, eps)
         settled = _relieved(s, 2.0 * bulk * area * excess)
         for i in range(5):
-            value = 0.25 * stress(s, f[i], c[i], y[i])
-            gradient[first[i]] += share[i] * value
-            if i < 2:
-                gradient[second[i]] += other[i] * value
-        if not curved:
-            continue
-        f_both[0, 0], f_both[1, 1], f_both[0, 2], f_both[1, 3] = sa, sb, s1, s2
-        c_both[0, 1], c_both[0, 4], c_both[1, 4] = lateral * sd, lateral * s2, lateral * s1
-        y_both[0, 0], y_both[0, 2] = squared * sa, squared * s1
-        for i in range(5):
             for k in range(i, 5):
                 value = 0.25 * modulus(settled, f[i], c[i], y[i], f[k], c[k], y[k],
                                        f_both[i, k], c_both[i, k], y_both[i, k])
-                _spread(hessian, value, first[i], second[i], share[i], other[i],
-                        first[k], second[k], share[k], other[k])
-                if k > i:
-                    _spread(hessian, value, first[k], second[k], share[k], other[k],
-                            first[i], second[i], share[i], other[i])
-    return gradient, hessian
+                _spread(result, value, i, k, xi, eta)
 
 
 @numba.njit(cache=True, inline='always')
-def _spread(hessian, value, i, i_other, share, other, k, k_other, share_k, other_k):
-    """Add a second derivative by two point coordinates to those of the element."""
-    hessian[i, k] += share * share_k * value
-    hessian[i_other, k] += other * share_k * value
-    hessian[i, k_other] += share * other_k * value
-    hessian[i_other, k_other] += other * other_k * value
+def _spread(result, value, i, k, xi, eta):
+    """Add a second derivative by s1, s2, A, B or D to those by A, B, D, p, q, a, b."""
+    row = 3 + i if i < 2 else i - 2
+    column = 3 + k if k < 2 else k - 2
+    share_row = (eta if i == 0 else xi) if i < 2 else 1.0
+    share_column = (eta if k == 0 else xi) if k < 2 else 1.0
+    _add(result, value * share_row * share_column, row, column)
+    if i < 2:
+        other_row = xi if i == 0 else eta
+        _add(result, value * other_row * share_column, row + 2, column)
+        if k < 2:
+            other_column = xi if k == 0 else eta
+            _add(result, value * other_row * other_column, row + 2, column + 2)
+            if i != k:
+                _add(result, value * share_row * other_column, row, column + 2)
+
+
+@numba.njit(cache=True, inline='always')
+def _add(result, value, row, column):
+    result[row, column] += value
+    if row != column:
+        result[column, row] += value
 
 
 @numba.njit(cache=True)
-def condense(hessian):
+def condense(curvature):
     """Remove the enhanced strains from the Hessian, in its leading (5, 5) part, in place."""
-    haa, hab, hbb = hessian[5, 5], hessian[5, 6], hessian[6, 6]
+    haa, hab, hbb = curvature[5, 5], curvature[5, 6], curvature[6, 6]
     determinant = haa * hbb - hab * hab
     for i in range(5):
-        ta = (hessian[i, 5] * hbb - hessian[i, 6] * hab) / determinant
-        tb = (hessian[i, 6] * haa - hessian[i, 5] * hab) / determinant
+        ta = (curvature[i, 5] * hbb - curvature[i, 6] * hab) / determinant
+        tb = (curvature[i, 6] * haa - curvature[i, 5] * hab) / determinant
         for k in range(5):
-            hessian[i, k] -= ta * hessian[5, k] + tb * hessian[6, k]
+            curvature[i, k] -= ta * curvature[5, k] + tb * curvature[6, k]
 
 
 @numba.njit(cache=True)
-def shape_gradient(z, strains, gradient, length, height):
+def shape_gradient(z, strains, by, length, height):
     """Return the gradient of the mean energy in m, n, g, (6,)."""
     _, _, sd, p, q = strains
-    by_d = gradient[2] - (gradient[3] * p + gradient[4] * q) / sd
-    by_p, by_q = gradient[3] / (sd * length), gradient[4] / (sd * height)
+    by_d = by[2] - (by[3] * p + by[4] * q) / sd
+    by_p, by_q = by[3] / (sd * length), by[4] / (sd * height)
     result = np.empty(6)
-    result[0] = 2.0 * gradient[0] * z[0] + by_d * z[3] + by_q * z[5]
-    result[1] = 2.0 * gradient[0] * z[1] - by_d * z[2] - by_q * z[4]
-    result[2] = 2.0 * gradient[1] * z[2] - by_d * z[1] - by_p * z[5]
-    result[3] = 2.0 * gradient[1] * z[3] + by_d * z[0] + by_p * z[4]
+    result[0] = 2.0 * by[0] * z[0] + by_d * z[3] + by_q * z[5]
+    result[1] = 2.0 * by[0] * z[1] - by_d * z[2] - by_q * z[4]
+    result[2] = 2.0 * by[1] * z[2] - by_d * z[1] - by_p * z[5]
+    result[3] = 2.0 * by[1] * z[3] + by_d * z[0] + by_p * z[4]
     result[4] = by_p * z[3] - by_q * z[1]
     result[5] = -by_p * z[2] + by_q * z[0]
     return result
@@ -215,28 +238,28 @@ def _congruence(inner, slope):
 
 
 @numba.njit(cache=True)
-def shape_hessian(z, strains, gradient, hessian, length, height):
-    """Return the Hessian of the mean energy in m, n, g, (6, 6), from the condensed one."""
+def shape_hessian(z, strains, by, curvature, length, height):
+    """Return the Hessian of the mean energy in m, n, g, (6, 6), ``curvature`` being condensed."""
     _, _, sd, p, q = strains
-    slope = np.zeros((5, 6))
-    slope[0, 0], slope[0, 1] = 2.0 * z[0], 2.0 * z[1]
-    slope[1, 2], slope[1, 3] = 2.0 * z[2], 2.0 * z[3]
-    slope[2, 0], slope[2, 1], slope[2, 2], slope[2, 3] = z[3], -z[2], -z[1], z[0]
-    slope[3, 2], slope[3, 3], slope[3, 4], slope[3, 5] = -z[5], z[4], z[3], -z[2]
-    slope[4, 0], slope[4, 1], slope[4, 4], slope[4, 5] = z[5], -z[4], -z[1], z[0]
+    jacobian = np.zeros((5, 6))
+    jacobian[0, 0], jacobian[0, 1] = 2.0 * z[0], 2.0 * z[1]
+    jacobian[1, 2], jacobian[1, 3] = 2.0 * z[2], 2.0 * z[3]
+    jacobian[2, 0], jacobian[2, 1], jacobian[2, 2], jacobian[2, 3] = z[3], -z[2], -z[1], z[0]
+    jacobian[3, 2], jacobian[3, 3], jacobian[3, 4], jacobian[3, 5] = -z[5], z[4], z[3], -z[2]
+    jacobian[4, 0], jacobian[4, 1], jacobian[4, 4], jacobian[4, 5] = z[5], -z[4], -z[1], z[0]
     for i in range(6):
-        slope[3, i] = (slope[3, i] / length - p * slope[2, i]) / sd
-        slope[4, i] = (slope[4, i] / height - q * slope[2, i]) / sd
-    inner = hessian[:5, :5].copy()
+        jacobian[3, i] = (jacobian[3, i] / length - p * jacobian[2, i]) / sd
+        jacobian[4, i] = (jacobian[4, i] / height - q * jacobian[2, i]) / sd
+    inner = curvature[:5, :5].copy()
     for strain in range(3, 5):
-        inner[strain, 2] -= gradient[strain] / sd
-        inner[2, strain] -= gradient[strain] / sd
-    result = _congruence(inner, slope)
-    by_d = gradient[2] - (gradient[3] * p + gradient[4] * q) / sd
-    by_p, by_q = gradient[3] / (sd * length), gradient[4] / (sd * height)
+        inner[strain, 2] -= by[strain] / sd
+        inner[2, strain] -= by[strain] / sd
+    result = _congruence(inner, jacobian)
+    by_d = by[2] - (by[3] * p + by[4] * q) / sd
+    by_p, by_q = by[3] / (sd * length), by[4] / (sd * height)
     for axis in range(2):
-        result[axis, axis] += 2.0 * gradient[0]
-        result[2 + axis, 2 + axis] += 2.0 * gradient[1]
+        result[axis, axis] += 2.0 * by[0]
+        result[2 + axis, 2 + axis] += 2.0 * by[1]
     # D = m x n, p D L = g x n and q D H = m x g.
     for value, left, right in ((by_d, 0, 2), (by_p, 4, 2), (by_q, 0, 4)):
         result[left, right + 1] += value
