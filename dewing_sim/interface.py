@@ -105,9 +105,10 @@ def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
     line = structure.surface(position)
     unit = np.eye(line.size).reshape(-1, *line.shape)
     columns = np.array([column_velocity(fluid.columns, line, motion) for motion in unit])
-    basis = np.array([structure.spread(column.reshape(line.shape)).ravel()[structure.free]
-                      for column in columns.T])
-    return LowRank(np.ascontiguousarray(basis.T), np.diff(fluid.columns)[:, None] * fluid.resistance)
+    basis = np.stack([structure.spread(column.reshape(line.shape)).ravel()[structure.free]
+                      for column in columns.T], axis=1)
+    weight = np.diff(fluid.columns)[:, None] * fluid.resistance
+    return LowRank(np.ascontiguousarray(basis), weight)
 
 
 @numba.njit(cache=True)

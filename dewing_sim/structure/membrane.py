@@ -147,6 +147,14 @@ class Membrane:
         response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
         return _assemble_force(edges, response.tension)
 
+    def energies(self, position: np.ndarray, v_squared: float) -> tuple[float, float]:
+        """Return the elastic and the electrostatic energy (C V^2 / 2) per unit span."""
+        stretch = self.stretch(position)
+        elastic, electric = self.sheet.energies(stretch, v_squared)
+        area = self.sheet.initial_thickness / (self.stretch_per_length
+                                               * self.sheet.lateral_stretch)
+        return float(area @ elastic), float(area @ electric)
+
     def tangent(self, position: np.ndarray, v_squared: float, pressure=0.0,
                 before: np.ndarray | None = None) -> np.ndarray:
         """Return d(internal force)/d(position) of the free nodes as a band (7, 2(n-1)).

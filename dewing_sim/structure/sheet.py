@@ -18,7 +18,14 @@ import numpy as np
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.scales import Scales
-from dewing_sim.structure.material import VACUUM_PERMITTIVITY, Elastomer, modulus, slopes, stress
+from dewing_sim.structure.material import (
+    VACUUM_PERMITTIVITY,
+    Elastomer,
+    energy,
+    modulus,
+    slopes,
+    stress,
+)
 
 SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
 
@@ -134,6 +141,16 @@ class Sheet:
         if status != _BALANCED:
             raise Diverged(self._describe_failure(status, k, stretch[k], v_squared))
         return Response(*response)
+
+    def energies(self, stretch, v_squared: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return elastic and electrostatic energy eps J E^2 / 2 per unstretched volume, (n,)."""
+        stretch = np.asarray(stretch, dtype=float)
+        l3 = self.respond(stretch, v_squared).thickness / self.initial_thickness
+        i1 = stretch ** 2 + self.lateral_stretch ** 2 + l3 ** 2
+        j = stretch * self.lateral_stretch * l3
+        y_squared = (stretch * self.lateral_stretch / self.initial_thickness) ** 2 * v_squared
+        elastic = energy(i1, j, 0.0, *self.elastomer.constants)
+        return elastic, elastic - energy(i1, j, y_squared, *self.elastomer.constants)
 
     def _describe_failure(self, status: int, element: int, stretch: float, v_squared: float,
                           ) -> str:
