@@ -28,6 +28,7 @@ class LockStep:
     steps: int = 0                          # made in this run
     stale: int = 0                          # commands with another stamp
     rejected: int = 0                       # unusable commands
+    unanswered: int = 0                     # steps that could not wait for their command
     plant_seconds: float = 0.0              # wall time spent in the plant
 
     def __post_init__(self):
@@ -73,3 +74,27 @@ class LockStep:
             if not math.isfinite(value):
                 raise Diverged(f'{name} = {value} after step {self.steps + 1}', self.state)
         return outputs
+
+
+@dataclass
+class Deadlines:
+    """When steps are due, ``period`` s of wall time apart, and how many began too late.
+
+    A step that begins more than a period after it was due is a miss; what follows is due a
+    period after it, so that one delay counts once and is not made up for by a rush.
+    """
+
+    period: float
+    missed: int = 0
+    due: float = 0.0
+
+    def start(self, now: float):
+        """Let the first step be due a period after ``now``."""
+        self.due = now + self.period
+
+    def begin(self, now: float):
+        """Note that the step that was due begins."""
+        if now - self.due > self.period:
+            self.missed += 1
+            self.due = now
+        self.due += self.period

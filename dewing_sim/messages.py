@@ -8,13 +8,13 @@ Frames: ``wing`` has x along the chord from the leading edge and y towards the s
 
 import dataclasses
 from array import array
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from geometry_msgs.msg import WrenchStamped
+from geometry_msgs.msg import Point, WrenchStamped
 from rcl_interfaces.msg import (
     FloatingPointRange,
     IntegerRange,
@@ -23,7 +23,8 @@ from rcl_interfaces.msg import (
 )
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, PointCloud2, PointField
-from std_msgs.msg import Float64
+from std_msgs.msg import ColorRGBA, Float64
+from visualization_msgs.msg import Marker
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
@@ -106,6 +107,19 @@ def membrane(outputs: Outputs) -> PointCloud2:
     return message
 
 
+def membrane_marker(outputs: Outputs, exaggeration: float) -> Marker:
+    """Return the membrane as a line in the wing frame, its deflection times ``exaggeration``."""
+    marker = Marker(ns='membrane', type=Marker.LINE_STRIP, action=Marker.ADD)
+    marker.header.frame_id = 'wing'
+    marker.header.stamp = to_stamp(round(outputs.time * 1.0e9))
+    marker.pose.orientation.w = 1.0
+    marker.scale.x = 0.005 * float(np.ptp(outputs.x))       # width of the line in m
+    marker.color = ColorRGBA(r=0.0, g=0.45, b=0.7, a=1.0)
+    marker.points = [Point(x=x, y=y) for x, y in zip(
+        outputs.x.tolist(), (exaggeration * outputs.y).tolist())]
+    return marker
+
+
 def loads(outputs: Outputs, flow: Flow, chord: float) -> WrenchStamped:
     """Return drag and lift (N/m) and the moment about c/4 (N) per unit span in wind axes.
 
@@ -159,10 +173,14 @@ def take_overrides(node) -> dict[str, Any]:
     return given
 
 
-def declare(node, section: Any, read_only: bool) -> None:
-    """Declare every leaf of ``section`` with its value, unit, meaning and range."""
+def declare(node, section: Any, read_only: bool, live: Collection[str] = ()) -> None:
+    """Declare every leaf of ``section`` with its value, unit, meaning and range.
+
+    ``live`` names leaves that may be changed although the others are read-only.
+    """
     for name, value, field in parameters.leaves(section):
-        node.declare_parameter(name, value, descriptor(field, read_only), ignore_override=True)
+        node.declare_parameter(name, value, descriptor(field, read_only and name not in live),
+                               ignore_override=True)
 
 
 def changed(section: Any, given) -> tuple[Any, SetParametersResult]:

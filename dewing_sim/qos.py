@@ -52,9 +52,9 @@ def publish(publisher, message: Any) -> bool:
     return True
 
 
-def deliver(publishers: Iterable[Any]) -> None:
-    """Wait until the reliable listeners of ``publishers`` have all messages, or have gone."""
-    deadline = monotonic() + PATIENCE
+def deliver(publishers: Iterable[Any], patience: float = PATIENCE) -> None:
+    """Wait until the reliable listeners have all messages or are gone, ``patience`` s at most."""
+    deadline = monotonic() + patience
     for publisher in publishers:
         while monotonic() < deadline and not publisher.wait_for_all_acked(Duration(seconds=0.2)):
             pass                # in short waits, between which a signal is heard

@@ -13,8 +13,9 @@ class Run:
 
     plant: str = choice('what is simulated', 'wing', 'reduced')
     mode: str = choice(
-        'wait for the command that answers each measurement, or step on with the last one',
-        'lockstep', 'free')
+        'wait for the command that answers each measurement, or step on with the last one, '
+        'paced or as fast as it goes', 'lockstep', 'realtime', 'free')
+    rate: float = real('-', 'simulated over wall time in mode realtime', 1.0e-6, 1.0e3)
     duration: float = real('s', 'simulated time after which the run ends, 0: never', 0.0, 1.0e6)
     subscribers: int = count('listeners to measurement to wait for before the first step', 0, 100)
     discovery_timeout: float = real(
@@ -25,8 +26,13 @@ class Run:
         's', 'further wait, with the last command held, after which the run stops', 0.0, 1.0e6)
     resend_period: float = real(
         's', 'wait after which an unanswered measurement is published again', 0.05, 1.0e3)
+    delivery_timeout: float = real(
+        's', 'longest wait at the end for slow listeners to take every message', 0.0, 1.0e6)
+    step_count: int = count('steps that one call of the service step makes', 1, 1000000)
     scalar_rate: float = real('Hz', 'rate of clock, scalars and loads', 1.0e-3, 1.0e9)
     membrane_rate: float = real('Hz', 'rate of the membrane shape', 1.0e-3, 1.0e9)
+    marker_exaggeration: float = real(
+        '-', 'factor on the deflection in membrane_marker', 1.0e-3, 1.0e6)
 
 
 @dataclass(frozen=True)

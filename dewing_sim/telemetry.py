@@ -44,7 +44,10 @@ class Telemetry:
             self._channels += [
                 channel('loads', messages.WrenchStamped, run.scalar_rate,
                         lambda outputs: messages.loads(outputs, case.flow, chord)),
-                channel('membrane', messages.PointCloud2, run.membrane_rate, messages.membrane)]
+                channel('membrane', messages.PointCloud2, run.membrane_rate, messages.membrane),
+                channel('membrane_marker', messages.Marker, run.membrane_rate,
+                        lambda outputs: messages.membrane_marker(
+                            outputs, run.marker_exaggeration))]
 
     def publish(self, outputs: Outputs) -> None:
         """Publish what is due at the time of ``outputs``."""

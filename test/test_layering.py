@@ -12,7 +12,7 @@ CHAIN = ('dewing_sim', 'dewing_sysid', 'dewing_control')
 FILES = sorted(path.relative_to(PROJECT) for package in CHAIN
                for path in (PROJECT / package).rglob('*.py'))
 ROS = {'rclpy', 'builtin_interfaces', 'rcl_interfaces', 'ament_index_python'}
-ROS_FILES = {'node.py', 'messages.py', 'qos.py', 'harness.py', 'recorder.py'}
+ROS_FILES = {'node.py', 'messages.py', 'qos.py', 'services.py', 'harness.py', 'recorder.py'}
 HEAVY = {'control', 'matplotlib', 'mcap', 'mcap_ros2', 'osqp', 'rosbags'}
 
 
