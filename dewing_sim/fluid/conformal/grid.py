@@ -60,6 +60,11 @@ class Grid:
         return 0.5 * (1.0 - np.cos(np.arange(number + 1) * self.step))
 
     @property
+    def cells(self) -> int:
+        """Number of nodes, each in a cell."""
+        return len(self.xi) * len(self.eta)
+
+    @property
     def step(self) -> float:
         """Distance of two nodes in xi."""
         return 2.0 * np.pi / len(self.xi)

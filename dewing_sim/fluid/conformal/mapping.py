@@ -121,7 +121,7 @@ def _metric(slope, scale, sinh, cosh, cos, sin):
 
 @kernel
 def _metric_and_flux(slope, rate, scale, scale_rate, sinh, cosh, cos, sin):
-    """Return |2 a sinh(zeta) - slope|^2, (2 a_t cosh(zeta) + rate) conj(2 a sinh(zeta) - slope)."""
+    """Return |s|^2 and (2 a_t cosh(zeta) + rate) conj(s) of s = 2 a sinh(zeta) - slope."""
     rows, n = slope.shape
     h2, flux = np.empty((rows, n)), np.empty((rows, n), dtype=np.complex128)
     for j in range(rows):
