@@ -11,7 +11,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 SOURCE = Path(__file__).resolve().parent        # colcon may run a link to this file
-EXECUTABLES = ('simulator', 'controller', 'recorder')
+EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder')
 ROS_WHEELS = ('; sys_platform == "linux" and platform_machine == "x86_64"'
               ' and python_version < "3.14"')
 
@@ -69,6 +69,7 @@ setup(
             'dewing = dewing_control.cli:main',
             'dewing_simulator = dewing_sim.node:main',
             'dewing_controller = dewing_control.node:main',
+            'dewing_sysid = dewing_sysid.node:main',
             'dewing_recorder = dewing_sim.recorder:main',
         ],
     },

@@ -109,6 +109,21 @@ def era(markov: np.ndarray, order: int, rows: int | None = None) -> Realisation:
     return factorise(markov, rows).realise(order)
 
 
+def delayed(realisation: Realisation) -> Realisation:
+    """Return the model whose input arrives one sample later; D moves into C.
+
+    x'[k] = (x[k], u[k-1]): A' = [[A, B], [0, 0]], B' = (0, I), C' = [C, D], D' = 0.  Markov
+    parameters realised from the second sample on, then delayed, keep an instantaneous response
+    (lift by the added mass of a membrane that V^2 kicks) out of the truncated Hankel matrix.
+    """
+    order, inputs = realisation.b.shape
+    a = np.zeros((order + inputs, order + inputs))
+    a[:order] = np.hstack([realisation.a, realisation.b])
+    b = np.vstack([np.zeros((order, inputs)), np.eye(inputs)])
+    return Realisation(a, b, np.hstack([realisation.c, realisation.d]),
+                       np.zeros_like(realisation.d))
+
+
 def okid(u: np.ndarray, y: np.ndarray, samples: int, lags: int) -> np.ndarray:
     """Estimate Markov parameters from arbitrary inputs through an observer.
 

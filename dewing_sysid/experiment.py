@@ -3,6 +3,7 @@
 """Run experiments on a plant: excited and undisturbed runs branch from one state."""
 
 import multiprocessing
+import signal
 import zipfile
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,6 +14,7 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from dewing_sim.errors import BadInput, Slack
+from dewing_sim.files import new_file
 from dewing_sim.identity import Identity
 from dewing_sim.plant import Outputs, Plant
 
@@ -62,7 +64,9 @@ class Record:
     names: tuple[str, ...]
 
     def __post_init__(self):
-        """Check shapes and numbers once, where every record is made."""
+        """Check once, where every record is made, and lay out by rows: BLAS rounds by layout."""
+        for name in ('v_squared', 'outputs', 'baseline'):
+            object.__setattr__(self, name, np.ascontiguousarray(getattr(self, name), float))
         expected = (len(self.names), len(self.v_squared))
         if not (np.isfinite(self.dt) and self.dt > 0.0):
             raise BadInput(f'dt = {self.dt} s must be positive')
@@ -95,12 +99,13 @@ class Record:
                        outputs=self.outputs[:, :samples], baseline=self.baseline[:, :samples])
 
 
-def save_records(path: str | Path, records: dict[str, Record], identity: Identity) -> None:
+def save_records(path: str | Path, records: dict[str, Record], identity: Identity,
+                 overwrite: bool = False) -> None:
     """Write the records of one identification, by run, to an npz that `load_records` reads."""
     arrays = {f'{run}/{key}': getattr(record, key) for run, record in records.items()
               for key in ('dt', 'v_squared', 'outputs', 'baseline', 'operating_v_squared',
                           'names')}
-    with open(path, 'wb') as file:
+    with new_file(path, overwrite) as file:
         np.savez(file, identity=identity.to_yaml(), **arrays)
 
 
@@ -177,7 +182,8 @@ def _forked(job: Callable, queue: Sequence[np.ndarray], processes: int):
     """Yield results in order; the job reaches the children by fork, so it need not pickle."""
     global _job
     _job = job
-    with multiprocessing.get_context('fork').Pool(min(processes, len(queue))) as pool:
+    with multiprocessing.get_context('fork').Pool(
+            min(processes, len(queue)), signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
         yield from pool.imap(_call, queue, chunksize=1)
 
 

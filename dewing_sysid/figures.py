@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dewing_sim.files import new_file
 from dewing_sysid.experiment import Record
 from dewing_sysid.identify import Identification
 from dewing_sysid.model import Model
@@ -14,10 +15,8 @@ from dewing_sysid.plan import EXPERIMENT, FRESH, SWEEP
 DRAWN_VALUES = 60                       # singular values shown
 
 
-def save(found: Identification, folder: str | Path) -> list[Path]:
+def save(found: Identification, folder: str | Path, overwrite: bool = False) -> list[Path]:
     """Write every figure as PNG into ``folder`` and return the paths."""
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
     drawings = {
         'response': lambda: responses(found.model, found.records[EXPERIMENT].head(found.window)),
         'singular_values': lambda: singular_values(found.model),
@@ -27,9 +26,9 @@ def save(found: Identification, folder: str | Path) -> list[Path]:
         drawings['fresh'] = lambda: responses(found.model, found.records[FRESH])
     paths = []
     for name, draw in drawings.items():
-        figure = draw()
-        paths.append(folder / f'{name}.png')
-        figure.savefig(paths[-1], dpi=120)
+        paths.append(Path(folder) / f'{name}.png')
+        with new_file(paths[-1], overwrite) as file:
+            draw().savefig(file, dpi=120)
     return paths
 
 

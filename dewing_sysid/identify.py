@@ -15,7 +15,7 @@ from dewing_sysid import era
 from dewing_sysid.experiment import Record, run_all, unit
 from dewing_sysid.model import Model, nrmse_fit
 from dewing_sysid.plan import EXPERIMENT, FRESH, HALF, SWEEP, make, samples, time_scale
-from dewing_sysid.settings import Settings
+from dewing_sysid.settings import Realisation, Settings
 
 WINDOWS = (0.3, 0.6, 1.2, 2.4, 4.8)     # c/U, about the paper's 1.2
 WORST_FIT = -1.0e6                      # percent, where an unstable model overflows
@@ -47,15 +47,15 @@ def identify(records: dict[str, Record], settings: Settings, identity: Identity,
         raise BadInput(f'the record has dt = {measured.dt:g} s, the plant {identity.dt:g} s')
     window = samples(chosen.window, scale, measured.dt)
     factors = factorise(measured, settings, window)
-    realisation, reflected = factors.realise(chosen.order), np.empty(0)
+    realisation, reflected = realise(factors, chosen, chosen.order), np.empty(0)
     if chosen.unstable_poles == 'reflect':
         realisation, reflected = era.reflect_unstable(realisation)
     model = _model(realisation, factors, measured, identity)
     runs = {'window': measured.head(window), **records}
     return Identification(
         replace(model, fit=judge(model, runs)), records, window, linearity(records), reflected,
-        {order: judge(_model(factors.realise(order), factors, measured, identity), runs)
-         for order in range(2, min(2 * chosen.order, factors.rank) + 1, 2)},
+        {order: judge(_model(realise(factors, chosen, order), factors, measured, identity), runs)
+         for order in range(2, min(2 * chosen.order, most_states(factors, chosen)) + 1, 2)},
         _effect_of_window(runs, settings, identity))
 
 
@@ -66,7 +66,8 @@ def _effect_of_window(runs: dict[str, Record], settings: Settings, identity: Ide
         length = samples(window, time_scale(identity), measured.dt)
         if length <= len(measured.u):
             factors = factorise(measured, settings, length)
-            realisation = factors.realise(min(settings.realisation.order, factors.rank))
+            chosen = settings.realisation
+            realisation = realise(factors, chosen, min(chosen.order, most_states(factors, chosen)))
             effect[window] = judge(_model(realisation, factors, measured, identity), runs)
     return effect
 
@@ -87,8 +88,27 @@ def markov(record: Record, lags: int, length: int) -> np.ndarray:
 
 
 def factorise(record: Record, settings: Settings, length: int) -> era.HankelFactors:
-    """Return the decomposed Hankel matrix of the first ``length`` Markov parameters."""
-    return era.factorise(markov(record, settings.realisation.lags, length))
+    """Return the decomposed Hankel matrix of the first ``length`` Markov parameters.
+
+    With ``at_once: state`` it begins one sample later, and `realise` adds the first.
+    """
+    h = markov(record, settings.realisation.lags, length)
+    return era.factorise(h[:, :, 1:] if settings.realisation.at_once == 'state' else h)
+
+
+def realise(factors: era.HankelFactors, chosen: Realisation, order: int) -> era.Realisation:
+    """Return the model of ``order`` states; raise `BadInput` if the record does not hold them."""
+    most = most_states(factors, chosen)
+    if order > most:
+        raise BadInput(f'order = {order} cannot be realised: the record holds {most} states')
+    if chosen.at_once == 'state':
+        return era.delayed(factors.realise(order - 1))
+    return factors.realise(order)
+
+
+def most_states(factors: era.HankelFactors, chosen: Realisation) -> int:
+    """Return the largest order that `realise` takes."""
+    return factors.rank + (chosen.at_once == 'state')
 
 
 def _model(realisation: era.Realisation, factors: era.HankelFactors, record: Record,

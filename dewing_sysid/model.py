@@ -10,6 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from dewing_sim.errors import BadInput
+from dewing_sim.files import new_file
+
+DELAY = 1.0e-6                          # modulus below which a pole is at z = 0
 
 
 @dataclass(frozen=True)
@@ -55,11 +58,11 @@ class Model:
     def modes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return natural frequency (Hz) and damping ratio of each pole, pairs once, ascending.
 
-        s = log(z) / dt, f = |s| / 2 pi, zeta = -Re(s) / |s|.
+        s = log(z) / dt, f = |s| / 2 pi, zeta = -Re(s) / |s|; poles at z = 0 are delays, not modes,
+        and left out.
         """
-        upper = self.poles[self.poles.imag >= 0.0].astype(complex)
-        floor = np.finfo(float).tiny
-        s = np.log(np.where(np.abs(upper) < floor, floor, upper)) / self.dt
+        poles = self.poles.astype(complex)
+        s = np.log(poles[(poles.imag >= 0.0) & (np.abs(poles) > DELAY)]) / self.dt
         modulus = np.abs(s)
         damping = np.divide(-s.real, modulus, out=np.zeros_like(modulus), where=modulus > 0.0)
         ascending = np.argsort(modulus)
@@ -79,9 +82,9 @@ class Model:
         resolvent = np.linalg.solve(z[:, None, None] * np.eye(self.order) - self.a, self.b)
         return (self.c @ resolvent + self.d)[:, :, 0].T
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | Path, overwrite: bool = False) -> None:
         """Write the npz file that `load` and the reduced plant read."""
-        with open(path, 'wb') as file:
+        with new_file(path, overwrite) as file:
             np.savez(file, A=self.a, B=self.b, C=self.c, D=self.d, dt=self.dt,
                      operating_v_squared=self.operating_v_squared,
                      rest_v_squared=self.operating_v_squared,

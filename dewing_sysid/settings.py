@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from dewing_sim.parameters import choice, count, real
+from dewing_sim.parameters import choice, count, real, text
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,10 @@ class Fresh:
 class Realisation:
     """How matrices are made of the record."""
 
-    order: int = count('number of states', 1, 200)
+    order: int = count('number of states', 2, 200)
     window: float = real('-', 'convective times c/U of pulse response used', 1.0e-3, 1.0e3)
+    at_once: str = choice('the response to V^2 within one sample: a state of its own, or left '
+                          'to the Hankel matrix as in the paper', 'state', 'hankel')
     lags: int = count('observer lags for experiments other than pulse', 1, 10000)
     unstable_poles: str = choice('what is done to unstable poles', 'keep', 'reflect')
     outputs: str = choice('identified outputs', 'standard', 'modal')
@@ -52,3 +54,19 @@ class Settings:
     experiment: Experiment
     fresh: Fresh
     realisation: Realisation
+
+
+@dataclass(frozen=True)
+class NodeSettings:
+    """What the node does beside identifying; given to it together with `Settings`."""
+
+    output: str = text('npz file of the model; it must not exist, none is written if empty')
+    records: str = text('npz file of the experiments; none is written if empty')
+    begin: str = choice('when the experiments begin', 'at_start', 'on_request')
+    afterwards: str = choice('what the node does with the model published', 'stay', 'exit')
+    patience: float = real('s', 'wall time without a measurement after which the node gives up',
+                           0.1, 1.0e6)
+
+
+NODE_DEFAULTS = dict(output='model.npz', records='', begin='at_start', afterwards='stay',
+                     patience=30.0)

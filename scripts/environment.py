@@ -18,7 +18,7 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[1]
 INGREDIENTS = ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'scripts/environment.py')
-EXECUTABLES = ('simulator', 'controller', 'recorder')
+EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder')
 REASONS = {
     'system': 'ROS: the sourced system ROS is used, since AMENT_PREFIX_PATH is set and this '
               'Python imports rclpy; the ROS wheels are left out.',

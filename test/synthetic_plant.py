@@ -51,7 +51,7 @@ class SyntheticPlant:
 
     def __post_init__(self):
         """Discretise once."""
-        object.__setattr__(self, '_abc', matrices(self.dt, self.speed, self.chord))
+        object.__setattr__(self, 'matrices', matrices(self.dt, self.speed, self.chord))
 
     def rest(self) -> tuple:
         """Return (steps made, V^2, modal state)."""
@@ -62,14 +62,14 @@ class SyntheticPlant:
         if v_squared > self.v_squared_slack:
             raise Slack('tension -0.1 N/m', state)
         number, _, x = state
-        a, b, _ = self._abc
+        a, b, _ = self.matrices
         drive = v_squared * (1.0 + self.hardening * v_squared)
         return number + 1, v_squared, a @ x + b[:, 0] * drive
 
     def observe(self, state: tuple) -> Outputs:
         """Return camber and lift about those of the paper's wing."""
         number, v_squared, x = state
-        mean, crest, lift = self._abc[2] @ x
+        mean, crest, lift = self.matrices[2] @ x
         return Outputs(time=number * self.dt, v_squared=v_squared, cl=0.395 + lift, cd=0.064,
                        cm=-0.1, camber_mean=1.8e-5 + mean, camber_max=2.7e-5 + crest,
                        camber_max_position=0.394, tension=1.2)

@@ -103,6 +103,16 @@ def test_feed_through_is_kept_apart_from_the_first_markov_parameter():
     assert np.allclose(reproduced(model, 20), h)
 
 
+def test_a_response_within_one_sample_takes_one_state_more():
+    a, b, c = random_stable(15, 4, 1, 2)
+    h = markov_parameters(a, b, c, 50)
+    h[:, :, 1] += 100.0
+    model = era.delayed(era.era(h[:, :, 1:], 4))
+    assert model.order == 5
+    assert not model.d.any()
+    assert np.allclose(reproduced(model, 50), h, atol=1e-9 * np.abs(h).max())
+
+
 def test_units_of_the_outputs_do_not_change_the_truncated_model():
     a, b, c = random_stable(7, 8, 1, 2)
     h = markov_parameters(a, b, c, 60)

@@ -31,7 +31,7 @@ PAPER = identity_of(SyntheticPlant())
 
 def settings(**changes):
     names = {'experiment__': 'experiment.', 'fresh__': 'fresh.', 'realisation__': 'realisation.'}
-    changed = {'realisation.order': 8}
+    changed = {'realisation.order': 8, 'realisation.at_once': 'hankel', 'realisation.window': 1.2}
     for key, value in changes.items():
         for prefix, dotted in names.items():
             key = key.replace(prefix, dotted)
@@ -60,6 +60,15 @@ def test_every_record_is_reproduced(pulsed):
     assert set(pulsed.model.fit) == {'window', 'experiment', 'half', 'prbs', 'chirp'}
     for fits in pulsed.model.fit.values():
         assert min(fits.values()) > 99.99
+
+
+@pytest.mark.parametrize('at_once, order', [('hankel', 8), ('state', 9)])
+def test_the_response_at_once_may_have_a_state_of_its_own(at_once, order):
+    found = found_on(SyntheticPlant(), settings(realisation__at_once=at_once,
+                                                realisation__order=order))
+    assert found.model.order == order
+    assert found.model.modes()[0][-3:] == pytest.approx(FREQUENCIES, rel=1e-6)
+    assert min(found.model.fit['prbs'].values()) > 99.99
 
 
 def test_first_sample_is_untouched_and_the_second_is_the_first_markov_parameter(pulsed):

@@ -17,7 +17,7 @@ import setuptools
 
 PROJECT = Path(__file__).parents[1]
 PACKAGE = ElementTree.parse(PROJECT / 'package.xml').getroot()
-EXECUTABLES = ('simulator', 'controller', 'recorder')
+EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder')
 
 
 @pytest.fixture(scope='module')
