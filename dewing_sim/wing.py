@@ -111,7 +111,7 @@ class Wing:
         loads = self.fluid.loads(state.flow)
         x, y = self.membrane.surface(state.motion.position).T
         peak, peak_x = _peak(x, y)
-        sheet = self.membrane.respond(state.motion.position, state.v_squared)
+        sheet = self.membrane.settled(state.motion).respond(state.motion.position, state.v_squared)
         centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
         return Outputs(
             time=state.step * self.dt, v_squared=state.v_squared,

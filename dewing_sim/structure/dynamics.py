@@ -18,6 +18,7 @@ import numpy as np
 
 from dewing_sim.errors import Diverged, NotConverged
 from dewing_sim.structure.band import Inverse, LowRank
+from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.statics import march
 
 ITERATIONS = 30
@@ -57,32 +58,15 @@ class Structure(Protocol):
     def spread(self, force: np.ndarray) -> np.ndarray:
         """Return the nodal forces of forces (n + 1, 2) on the surface, its transpose."""
 
+    def during(self, motion: Motion, dt: float, v_squared: float) -> 'Structure':
+        """Return the structure with what it remembers in the step that follows ``motion``."""
+
+    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
+              ) -> np.ndarray:
+        """Return the memory after a step from ``motion`` to ``position``."""
+
     def require_taut(self, position: np.ndarray, v_squared: float) -> None:
         """Raise `Slack` if the structure cannot carry its state."""
-
-
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """Positions and velocities (nodes, 2) of the present and the previous time level."""
-
-    position: np.ndarray
-    velocity: np.ndarray
-    position_before: np.ndarray
-    velocity_before: np.ndarray
-
-    @classmethod
-    def at_rest(cls, position: np.ndarray) -> 'Motion':
-        """Return a structure that has been resting at ``position``."""
-        velocity = np.zeros_like(position)
-        return cls(position, velocity, position, velocity)
-
-    def predict(self, dt: float) -> np.ndarray:
-        """Return the position one step ahead, extrapolated with an error of order dt^3."""
-        return self.position + dt * (1.5 * self.velocity - 0.5 * self.velocity_before)
-
-    def rate(self, position: np.ndarray, dt: float) -> np.ndarray:
-        """Return the BDF2 velocity if ``position`` is reached one step ahead."""
-        return _velocity(position, self.position, self.position_before, dt)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,12 +104,6 @@ def _inverse(structure: Structure, position: np.ndarray, v_squared: float, dt: f
 
 
 @numba.njit(cache=True)
-def _velocity(position, now, before, dt):
-    """Return the BDF2 derivative (3 x - 4 x_n + x_n-1) / (2 dt)."""
-    return (3.0 * position - 4.0 * now + before) / (2.0 * dt)
-
-
-@numba.njit(cache=True)
 def _imbalance(mass, velocity, now, before, dt, damping, internal, load):
     """Return M (a + damping w) + f_int - load, (nodes, 2)."""
     result = np.empty_like(velocity)
@@ -150,6 +128,7 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
     necessary in several shares of the imbalance there. Raises `Slack`, `Diverged` or
     `NotConverged`.
     """
+    structure = structure.during(motion, dt, v_squared)
     step = _Step(structure, motion, dt, v_squared, load, operator, damping, tolerance)
     start = motion.predict(dt) if guess is None else guess
     position = step.by_chords(start, operator.inverse)
@@ -158,7 +137,8 @@ def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, l
     if position is None:
         position = march(step.by_newton, motion.position, SMALLEST_SHARE)
     structure.require_taut(position, v_squared)
-    return Motion(position, motion.rate(position, dt), motion.position, motion.velocity)
+    return Motion(position, motion.rate(position, dt), motion.position, motion.velocity,
+                  structure.after(motion, position, v_squared, dt))
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ Forces are per unit span; any consistent system of units.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numba
@@ -19,7 +19,9 @@ from dewing_sim.errors import BadInput, Slack
 from dewing_sim.scales import Scales
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
-from dewing_sim.structure.sheet import SI, Response, Sheet
+from dewing_sim.structure.motion import Motion
+from dewing_sim.structure.sheet import SI, Overstress, Response, Sheet
+from dewing_sim.structure.viscosity import Prony
 
 
 @numba.njit(cache=True)
@@ -87,10 +89,12 @@ class Membrane:
     prestretch: float
     rest_position: np.ndarray
     mass: np.ndarray
+    viscosity: Prony | None = None
+    overstress: Overstress | None = None
 
     @classmethod
     def uniform(cls, sheet: Sheet, prestretch: float, density: float, chord: float,
-                elements: int) -> 'Membrane':
+                elements: int, viscosity: Prony | None = None) -> 'Membrane':
         """Return a membrane of equal elements; ``density`` is that of the elastomer."""
         if elements < 2:
             raise BadInput(f'elements = {elements} is out of range: at least 2')
@@ -100,14 +104,16 @@ class Membrane:
                            / (prestretch * sheet.lateral_stretch))
         mass = np.full(elements + 1, surface_density * chord / elements)
         mass[[0, -1]] *= 0.5
-        return cls(sheet, prestretch, position, mass)
+        return cls(sheet, prestretch, position, mass, viscosity)
 
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Membrane':
         """Return the membrane of a parameter section in the units of ``scales``."""
         sheet = Sheet.from_parameters(section, scales)
+        viscosity = (Prony((section.viscous_share,), (section.viscous_time / scales.time,))
+                     if section.viscous_share else None)
         return cls.uniform(sheet, section.prestretch, section.density / scales.density,
-                           section.chord / scales.length, section.elements)
+                           section.chord / scales.length, section.elements, viscosity)
 
     @property
     def elements(self) -> int:
@@ -139,13 +145,45 @@ class Membrane:
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return tension, its slopes and thickness of the elements, each (n,)."""
-        return self.sheet.respond(self.stretch(position), v_squared)
+        return self.sheet.respond(self.stretch(position), v_squared, self.overstress)
 
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the gradient (n+1, 2) of the potential energy in ``position`` (n+1, 2)."""
         edges = _edges(position)
-        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
+        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared,
+                                      self.overstress)
         return _assemble_force(edges, response.tension)
+
+    def during(self, motion: Motion, dt: float, v_squared: float) -> 'Membrane':
+        """Return the membrane with the overstress of the step that follows ``motion``."""
+        if self.viscosity is None:
+            return self
+        memory = self._memory(motion, v_squared)
+        return replace(self, overstress=Overstress(self.viscosity.instant_gain(dt),
+                                                   self.viscosity.held(memory, dt)))
+
+    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
+              ) -> np.ndarray:
+        """Return the memory after a step from ``motion`` to ``position``; empty if elastic."""
+        if self.viscosity is None:
+            return motion.memory
+        stress = self._deviatoric_stress(position, v_squared)
+        return self.viscosity.remember(self._memory(motion, v_squared), stress, dt)
+
+    def settled(self, motion: Motion) -> 'Membrane':
+        """Return the membrane with its present overstress, to observe it."""
+        if self.viscosity is None or not motion.memory.size:
+            return self
+        return replace(self, overstress=Overstress(0.0, motion.memory[:-1].sum(axis=0)))
+
+    def _memory(self, motion: Motion, v_squared: float) -> np.ndarray:
+        if motion.memory.size:
+            return motion.memory
+        return self.viscosity.relaxed(self._deviatoric_stress(motion.position, v_squared))
+
+    def _deviatoric_stress(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        thickness = self.respond(position, v_squared).thickness
+        return self.sheet.deviatoric_stress(self.stretch(position), thickness)
 
     def energies(self, position: np.ndarray, v_squared: float) -> tuple[float, float]:
         """Return the elastic and the electrostatic energy (C V^2 / 2) per unit span."""
@@ -164,7 +202,8 @@ class Membrane:
         the position of Newton's last iteration, does not matter here.
         """
         edges = _edges(position)
-        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared)
+        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared,
+                                      self.overstress)
         band = _assemble_tangent(edges, response.tension,
                                  response.stiffness * self.stretch_per_length)
         if np.any(pressure):

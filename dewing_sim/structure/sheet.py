@@ -22,6 +22,7 @@ from dewing_sim.structure.material import (
     VACUUM_PERMITTIVITY,
     Elastomer,
     energy,
+    gent,
     modulus,
     slopes,
     stress,
@@ -50,14 +51,17 @@ _BALANCED, _LOCKED, _PULLED_IN = 0, 1, 2
 
 
 @numba.njit(cache=True)
-def _balance_thickness(l1, l2, l3, field_squared, mu, jm, bulk, eps):
+def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, mu, jm, bulk, eps):
     """Solve tau_3 = 0 for l_3; return tau_1, d tau_1/d e_1, d tau_1/d field_squared, l_3, status.
 
-    Newton from the given l_3. The last correction is condensed into tau_1, which leaves an error
+    ``extra1`` and ``extra3`` are second Piola-Kirchhoff stresses on top, held fixed. Newton from
+    the given l_3. The last correction is condensed into tau_1, which leaves an error
     of its square.
     """
     for _ in range(60):
         t1, t3, c11, c13, c33, i1 = kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps)
+        t1, c11 = t1 + extra1 * l1 * l1, c11 + 2.0 * extra1 * l1 * l1
+        t3, c33 = t3 + extra3 * l3 * l3, c33 + 2.0 * extra3 * l3 * l3
         if not i1 - 3.0 < jm:
             return t1, c11, 0.0, l3, _LOCKED
         if not c33 > 0.0:
@@ -72,7 +76,7 @@ def _balance_thickness(l1, l2, l3, field_squared, mu, jm, bulk, eps):
 
 
 @numba.njit(cache=True)
-def _respond(stretch, lateral, thickness, v_squared, mu, jm, bulk, eps):
+def _respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
     """Fill rows tension, its slopes in stretch and V^2, thickness; return status and element."""
     response = np.empty((4, stretch.size))
     field_squared = v_squared / thickness ** 2
@@ -80,7 +84,8 @@ def _respond(stretch, lateral, thickness, v_squared, mu, jm, bulk, eps):
     for k in range(stretch.size):
         l1 = stretch[k]
         tau, modulus, slope, l3, status = _balance_thickness(
-            l1, lateral, volume / (l1 * lateral), field_squared, mu, jm, bulk, eps)
+            l1, lateral, volume / (l1 * lateral), field_squared, extra[0, k], extra[1, k],
+            mu, jm, bulk, eps)
         if status != _BALANCED:
             return response, status, k
         volume = l1 * lateral * l3
@@ -99,6 +104,16 @@ class Response(NamedTuple):
     stiffness: np.ndarray           # dT / d stretch at constant V
     voltage_slope: np.ndarray       # dT / dV^2 at constant stretch, -eps/h when incompressible
     thickness: np.ndarray           # h
+
+
+class Overstress(NamedTuple):
+    """Viscous second Piola-Kirchhoff stress: ``gain`` times the deviatoric one, plus ``held``.
+
+    ``held`` (2, n) has the components along the stretch and through the thickness.
+    """
+
+    gain: float
+    held: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -127,7 +142,8 @@ class Sheet:
         return cls(elastomer, section.initial_thickness / scales.length,
                    section.prestretch_lateral)
 
-    def respond(self, stretch, v_squared: float) -> Response:
+    def respond(self, stretch, v_squared: float, overstress: Overstress | None = None,
+                ) -> Response:
         """Return tension, slopes and thickness at total stretches (n,) and the given V^2.
 
         Raises `BadInput` for a negative or non-finite V^2, `Diverged` beyond the Gent limit or
@@ -136,11 +152,24 @@ class Sheet:
         if not 0.0 <= v_squared < math.inf:
             raise BadInput(f'v_squared = {v_squared} V^2 is out of range: from 0 to infinity')
         stretch = np.asarray(stretch, dtype=float)
+        gain, held = overstress or (0.0, np.zeros((2, stretch.size)))
+        mu, *others = self.elastomer.constants
         response, status, k = _respond(stretch, self.lateral_stretch, self.initial_thickness,
-                                       float(v_squared), *self.elastomer.constants)
+                                       float(v_squared), held, (1.0 + gain) * mu, *others)
         if status != _BALANCED:
             raise Diverged(self._describe_failure(status, k, stretch[k], v_squared))
         return Response(*response)
+
+    def deviatoric_stress(self, stretch, thickness) -> np.ndarray:
+        """Return the deviatoric second Piola-Kirchhoff stress of the Gent energy, (2, n).
+
+        The components are those along the stretch and through ``thickness`` (n,).
+        """
+        squares = np.stack([stretch, thickness / self.initial_thickness]) ** 2
+        i1 = squares.sum(axis=0) + self.lateral_stretch ** 2
+        scale = (np.sqrt(squares.prod(axis=0)) * self.lateral_stretch) ** (-2.0 / 3.0)
+        first, _ = gent(scale * i1, self.elastomer.shear_modulus, self.elastomer.gent_limit)
+        return 2.0 * first * scale * (1.0 - i1 / (3.0 * squares))
 
     def energies(self, stretch, v_squared: float) -> tuple[np.ndarray, np.ndarray]:
         """Return elastic and electrostatic energy eps J E^2 / 2 per unstretched volume, (n,)."""

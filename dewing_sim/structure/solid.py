@@ -22,6 +22,7 @@ from dewing_sim.scales import Scales
 from dewing_sim.structure import solid_assembly as assembly
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
+from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.sheet import SI, Sheet
 from dewing_sim.structure.solid_element import BALANCED, LOCKED
 
@@ -80,7 +81,13 @@ class Solid:
 
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Solid':
-        """Return the strip of a parameter section in the units of ``scales``."""
+        """Return the strip of a parameter section in the units of ``scales``.
+
+        Raises `BadInput` for a viscous branch, which only the membrane element has.
+        """
+        if section.viscous_share:
+            raise BadInput(f'membrane.viscous_share = {section.viscous_share:g}: solid elements '
+                           'are elastic; take membrane.element = membrane or a share of 0.0')
         return cls.uniform(Sheet.from_parameters(section, scales), section.prestretch,
                            section.density / scales.density, section.chord / scales.length,
                            section.elements)
@@ -141,6 +148,19 @@ class Solid:
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the gradient (2(n+1), 2) of the potential energy."""
         return self.respond(position, v_squared).force
+
+    def during(self, motion: Motion, dt: float, v_squared: float) -> 'Solid':
+        """Return the strip itself: it has no memory."""
+        return self
+
+    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
+              ) -> np.ndarray:
+        """Return the empty memory of an elastic strip."""
+        return motion.memory
+
+    def settled(self, motion: Motion) -> 'Solid':
+        """Return the strip itself."""
+        return self
 
     def energies(self, position: np.ndarray, v_squared: float) -> tuple[float, float]:
         """Return the elastic and the electrostatic energy (C V^2 / 2) per unit span."""

@@ -1,0 +1,64 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Quasi-linear viscoelasticity: a Prony series on the deviatoric stress.
+
+To the long-term stress of the elastomer, branches i add the second Piola-Kirchhoff overstress
+(Holzapfel and Gasser, doi 10.1016/S0045-7825(00)00323-6)
+
+    dh_i/dt + h_i / tau_i = beta_i dS_dev/dt,
+
+with S_dev the deviatoric stress of the Gent energy. A step of dt in which S_dev changes linearly
+is solved exactly: h_i' = e_i h_i + beta_i r_i (S_dev' - S_dev), e = exp(-dt/tau),
+r = (1 - e) tau / dt. Statics see the long-term elastomer.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dewing_sim.errors import BadInput
+
+
+@dataclass(frozen=True)
+class Prony:
+    """Branches with moduli ``shares`` (of the long-term modulus) and relaxation ``times``."""
+
+    shares: tuple[float, ...]
+    times: tuple[float, ...]
+
+    def __post_init__(self):
+        """Raise `BadInput` unless shares and positive times come in pairs."""
+        if len(self.shares) != len(self.times):
+            raise BadInput(f'{len(self.shares)} shares of viscous branches, '
+                           f'{len(self.times)} times')
+        for share, time in zip(self.shares, self.times):
+            if not (0.0 <= share < np.inf and 0.0 < time < np.inf):
+                raise BadInput(f'viscous branch of share {share} and time {time} s is out of '
+                               'range: zero or more, and more than zero')
+
+    def instant_gain(self, dt: float) -> float:
+        """Return the sum of beta r: the overstress per change of S_dev within a step."""
+        return float(np.dot(self.shares, self._ramp(dt)))
+
+    def held(self, memory: np.ndarray, dt: float) -> np.ndarray:
+        """Return the overstress of the next step less its gain times the new S_dev.
+
+        ``memory`` (branches + 1, components, n) holds the h_i and, last, S_dev.
+        """
+        fade = np.exp(-dt / np.array(self.times))
+        return np.tensordot(fade, memory[:-1], 1) - self.instant_gain(dt) * memory[-1]
+
+    def remember(self, memory: np.ndarray, stress: np.ndarray, dt: float) -> np.ndarray:
+        """Return the memory after a step that ended at S_dev = ``stress`` (components, n)."""
+        fade = np.exp(-dt / np.array(self.times))[:, None, None]
+        gain = (np.array(self.shares) * self._ramp(dt))[:, None, None]
+        return np.concatenate([fade * memory[:-1] + gain * (stress - memory[-1]), stress[None]])
+
+    def relaxed(self, stress: np.ndarray) -> np.ndarray:
+        """Return the memory of a long rest at S_dev = ``stress`` (components, n)."""
+        still = np.zeros((len(self.shares), *stress.shape))
+        return np.concatenate([still, stress[None]])
+
+    def _ramp(self, dt: float) -> np.ndarray:
+        share = dt / np.array(self.times)
+        return -np.expm1(-share) / share
