@@ -35,15 +35,20 @@ def runs(engine: str, quick: bool) -> dict[str, PlateRun]:
 
 def checks(engine: str, results: dict[str, PlateResult]) -> list[Check]:
     """Judge invariance under rotation, the trend of the camber lift and strong camber."""
-    straight = results['turned 0']
-    found = [Check(f'plate at 4 deg, {name[7:]} deg of it by the map: {quantity.capitalize()}',
-                   engine, getattr(result, quantity)[-1], getattr(straight, quantity)[-1],
-                   'the same plate in a turned stream', gate)
-             for name, result in results.items() if name.startswith('turned ') and
-             result is not straight for quantity, gate in (('cl', 0.005), ('cd', 0.015))]
+    found = _turned(engine, results) if 'turned 0' in results else []
     if 'camber 2 %' not in results:
         return found
     return [*found, *_slope(engine, results), *_strong(engine, results)]
+
+
+def _turned(engine: str, results: dict[str, PlateResult]) -> list[Check]:
+    straight = results['turned 0']
+    return [Check(f'plate at 4 deg, {name[7:]} deg of it by the map: {quantity.capitalize()}',
+                  engine, getattr(result, quantity)[-1], getattr(straight, quantity)[-1],
+                  'the same plate in a turned stream', gate)
+            for name, result in results.items()
+            if name.startswith('turned ') and result is not straight
+            for quantity, gate in (('cl', 0.005), ('cd', 0.015))]
 
 
 def _slope(engine: str, results: dict[str, PlateResult]) -> list[Check]:

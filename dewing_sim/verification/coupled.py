@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_sim import parameters, spectrum
-from dewing_sim.verification.rigid_flow import SPEED
+from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import block_mean
 from dewing_sim.verification.study import Check, Study
 from dewing_sim.wing import Wing
@@ -44,7 +44,7 @@ class WingRun:
     @property
     def cost(self) -> float:
         """Expected milliseconds."""
-        return 2.0 * SPEED[self.grid] * (30.0 + self.duration) / 0.004
+        return 2.0 * step_cost(self.engine, self.grid) * (30.0 + self.duration) / 0.004
 
     def __call__(self) -> WingResult:
         """Trim, then march."""

@@ -9,7 +9,7 @@ import numpy as np
 from dewing_sim import parameters, trim
 from dewing_sim.plate import adapt_circulation
 from dewing_sim.verification.closed_forms import TRIPLE_DECK, sail_deflection, sail_divergence
-from dewing_sim.verification.rigid_flow import SPEED
+from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import limit
 from dewing_sim.verification.study import Check, Study
 from dewing_sim.wing import State, Wing
@@ -33,7 +33,7 @@ class SailRun:
     @property
     def cost(self) -> float:
         """Expected milliseconds."""
-        return 2.0 * SPEED[self.grid] * self.duration / 0.004
+        return 2.0 * step_cost(self.engine, self.grid) * self.duration / 0.004
 
     def __call__(self) -> float:
         """March to the static shape."""

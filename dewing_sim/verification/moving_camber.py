@@ -8,7 +8,7 @@ import numpy as np
 
 from dewing_sim.fluid import engines
 from dewing_sim.verification.closed_forms import oscillating_camber
-from dewing_sim.verification.rigid_flow import SPEED, march, parabola
+from dewing_sim.verification.rigid_flow import march, parabola, step_cost
 from dewing_sim.verification.study import Check, Study
 
 REFERENCE = 0.4577 - 0.0791j
@@ -36,7 +36,7 @@ class ForcedCamberRun:
     @property
     def cost(self) -> float:
         """Expected milliseconds."""
-        return SPEED[self.grid] * self.periods * self.steps
+        return step_cost(self.engine, self.grid) * self.periods * self.steps
 
     @property
     def omega(self) -> float:

@@ -10,11 +10,20 @@ import numpy as np
 
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Fluid, Wall
+from dewing_sim.fluid.conformal.engine import Conformal
 from dewing_sim.fluid.finite_volume.engine import FiniteVolume
 from dewing_sim.fluid.finite_volume.grid import PRESETS, Spacing, build
 from dewing_sim.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
 
-SPEED = {'fast': 0.4, 'standard': 1.0, 'fine': 4.0}     # expected ms per step
+MILLISECONDS = {                        # expected, of a step of a rigid plate
+    'finite_volume': {'fast': 0.4, 'standard': 1.0, 'fine': 4.0},
+    'conformal': {'fast': 0.3, 'standard': 0.5, 'fine': 1.0},
+}
+
+
+def step_cost(engine: str, grid: str) -> float:
+    """Return the expected milliseconds of a step; engines not known here count as the slowest."""
+    return MILLISECONDS.get(engine, {}).get(grid, 4.0)
 
 
 def march(fluid: Fluid, wall_at: Callable[[float], Wall], duration: float, circulation: float,
@@ -38,7 +47,7 @@ def parabola(columns: np.ndarray, camber: float, rate: float) -> Wall:
 
 @singledispatch
 def suction_flow(fluid: Any, flow: Any) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return x and the flow along the wall just above it, None where the engine does not tell."""
+    """Return x and a measure of the flow along the upper side, None where it is not known."""
     return None
 
 
@@ -46,6 +55,13 @@ def suction_flow(fluid: Any, flow: Any) -> tuple[np.ndarray, np.ndarray] | None:
 def _(fluid: FiniteVolume, flow: Any) -> tuple[np.ndarray, np.ndarray]:
     grid = fluid.grid
     return fluid.columns, flow.u[grid.leading:grid.trailing + 1, grid.middle]
+
+
+@suction_flow.register
+def _(fluid: Conformal, flow: Any) -> tuple[np.ndarray, np.ndarray]:
+    upper = slice(len(fluid.grid.xi) // 2 - 1, None, -1)        # from the leading edge
+    place, _ = fluid.geometry.mapping.wall(flow.map)
+    return place.real[upper], -flow.w[0, upper]
 
 
 @dataclass(frozen=True)
@@ -114,7 +130,7 @@ class PlateRun:
     @property
     def cost(self) -> float:
         """Expected milliseconds."""
-        return SPEED[self.grid] * self.duration / self.dt / self.coarsening**2
+        return step_cost(self.engine, self.grid) * self.duration / self.dt / self.coarsening**2
 
     def fluid(self) -> Fluid:
         """Return the flow solver."""

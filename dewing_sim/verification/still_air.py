@@ -10,7 +10,7 @@ from dewing_sim import parameters
 from dewing_sim.fluid.base import Wall
 from dewing_sim.structure.dynamics import Motion
 from dewing_sim.verification.closed_forms import frequencies_in_air
-from dewing_sim.verification.rigid_flow import SPEED
+from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import ringing
 from dewing_sim.verification.study import Check, Study
 from dewing_sim.wing import State, Wing
@@ -46,7 +46,7 @@ class PluckRun:
     @property
     def cost(self) -> float:
         """Expected milliseconds."""
-        return 2.0 * SPEED[self.grid] * self.duration / self.dt
+        return 2.0 * step_cost(self.engine, self.grid) * self.duration / self.dt
 
     def __call__(self) -> Ringing:
         """Release, march, and fit the free oscillation."""

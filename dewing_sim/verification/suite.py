@@ -9,7 +9,7 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
-from dewing_sim.errors import RunFailed
+from dewing_sim.errors import DewingError
 from dewing_sim.verification import (
     added_mass,
     camber,
@@ -81,7 +81,7 @@ def verify(engines: Sequence[str], quick: bool = False, jobs: int | None = None,
 
 def failures(study: Study, engine: str, answers: dict[str, Any]) -> Check | None:
     """Return the missed check of a study some of whose runs failed."""
-    failed = {name: answer for name, answer in answers.items() if isinstance(answer, RunFailed)}
+    failed = {name: answer for name, answer in answers.items() if isinstance(answer, DewingError)}
     if not failed:
         return None
     name, error = next(iter(failed.items()))
@@ -103,7 +103,7 @@ def between_engines(checks: list[Check]) -> list[Check]:
 
 def execute(runs: set[Run], jobs: int | None = None, progress: Callable | None = None,
             ) -> dict[Run, Any]:
-    """Return the result, or the `RunFailed`, of each run; the most expensive ones start first."""
+    """Return the result or `DewingError` of each run; the most expensive ones start first."""
     ordered = sorted(runs, key=lambda run: (-run.cost, repr(run)))
     results: dict[Run, Any] = {}
     for name in SINGLE_THREAD:      # read when a new process loads its libraries
@@ -125,7 +125,7 @@ def execute(runs: set[Run], jobs: int | None = None, progress: Callable | None =
 def _result(future: Future) -> Any:
     try:
         return future.result()
-    except RunFailed as error:
+    except DewingError as error:
         return error
 
 
