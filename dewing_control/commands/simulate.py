@@ -85,13 +85,13 @@ def _check_voltage(voltage: float | None, case: Case) -> None:
 
 
 def _warn_of_breakdown(voltage: float, case: Case) -> None:
+    from dewing_sim.structure.limits import breakdown_warning
     membrane = case.membrane
     field = voltage * membrane.prestretch * membrane.prestretch_lateral / (
         membrane.initial_thickness)
-    if field > case.actuation.breakdown_field:
-        warnings.warn(f'{voltage:.0f} V is a field of {field / 1.0e6:.1f} MV/m in the membrane; '
-                      f'above {case.actuation.breakdown_field / 1.0e6:g} MV/m '
-                      'the elastomer may break down', RuntimeWarning, stacklevel=2)
+    warning = breakdown_warning(field, case.actuation.breakdown_field)
+    if warning:
+        warnings.warn(f'{voltage:.0f} V is {warning}', RuntimeWarning, stacklevel=2)
 
 
 class Loop(NamedTuple):

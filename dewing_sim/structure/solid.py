@@ -25,10 +25,11 @@ from dewing_sim.structure.follower import pressure_force, subtract_stiffness
 from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.sheet import SI, Sheet
 from dewing_sim.structure.solid_element import BALANCED, LOCKED
+from dewing_sim.structure.strip import lengths, nodal_mass, straight_edges
 
 HALF_BAND = 7               # couplings of a degree of freedom on either side
 EDGE_LENGTH = 2.0           # of the first element, in deformed thicknesses
-GROWTH = 1.5                # of element lengths away from the edges
+EDGE_LAYER = 6.0            # deformed thicknesses, in which the mid-plane leaves the pins
 FITS = 10                   # of the reference length
 LOWER, FACE = 'lower', 'face'
 
@@ -70,13 +71,13 @@ class Solid:
         if elements < 4:
             raise BadInput(f'elements = {elements} is out of range: at least 4')
         thickness = float(sheet.respond([prestretch], 0.0).thickness[0])
-        share = _lengths(elements, EDGE_LENGTH * thickness / chord)
+        share = lengths(elements, EDGE_LENGTH * thickness / chord)
         position = np.zeros((2 * elements + 2, 2))
         position[:, 0] = np.repeat(chord * np.concatenate([[0.0], np.cumsum(share)]), 2)
         position[0::2, 1], position[1::2, 1] = -0.5 * thickness, 0.5 * thickness
         total = chord / prestretch
         solid = cls(sheet, prestretch, chord, FACE, total * share,
-                    _mass(total * share, sheet, density), position)
+                    nodal_mass(total * share, sheet, density), position)
         return solid if support == FACE else _fitted(solid, density)
 
     @classmethod
@@ -111,7 +112,7 @@ class Solid:
 
     @cached_property
     def _share(self) -> np.ndarray:
-        """Weights of bottom and top in the surface, (n+1, 2)."""
+        """Weights of bottom and top in the mid-plane with the pins at its ends, (n+1, 2)."""
         share = np.full((self.elements + 1, 2), 0.5)
         if self.support == LOWER:
             share[[0, -1]] = 1.0, 0.0
@@ -120,13 +121,36 @@ class Solid:
     def surface(self, nodal: np.ndarray) -> np.ndarray:
         """Return what the flow sees of nodal positions or velocities, (n+1, 2).
 
-        That is the mid-plane, and the pins at its ends.
+        That is the mid-plane and, within a few thicknesses of the edges, where the strip bends
+        away from its line of tension, the straight line to the pins.
         """
-        return np.einsum('ka,kai->ki', self._share, nodal.reshape(-1, 2, 2))
+        line = self._mid_plane(nodal)
+        inner, left, right = self._edges
+        line[:inner] = left @ line[[0, inner]]
+        line[-inner:] = right @ line[[-1, -1 - inner]]
+        return line
 
     def spread(self, force: np.ndarray) -> np.ndarray:
         """Return the nodal forces of forces (n+1, 2) on the surface, its transpose."""
+        inner, left, right = self._edges
+        force = force.copy()
+        ends = left.T @ force[:inner], right.T @ force[-inner:]
+        force[:inner], force[-inner:] = 0.0, 0.0
+        force[[0, inner]] += ends[0]
+        force[[-1, -1 - inner]] += ends[1]
+        return self._nodal(force)
+
+    def _mid_plane(self, nodal: np.ndarray) -> np.ndarray:
+        return np.einsum('ka,kai->ki', self._share, nodal.reshape(-1, 2, 2))
+
+    def _nodal(self, force: np.ndarray) -> np.ndarray:
         return (self._share[:, :, None] * force[:, None, :]).reshape(-1, 2)
+
+    @cached_property
+    def _edges(self) -> tuple[int, np.ndarray, np.ndarray]:
+        """Stations on the straight edges, and their weights of the pin and the end, (k, 2)."""
+        layer = EDGE_LAYER * self.sheet.initial_thickness / self.prestretch
+        return straight_edges(self._mid_plane(self.rest_position)[:, 0], layer)
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return the response at ``position`` (2(n+1), 2) and V^2.
@@ -185,8 +209,8 @@ class Solid:
         return band
 
     def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
-        """Return the nodal forces of a pressure jump on the surface, scalar or (n,), to +y."""
-        return self.spread(pressure_force(self.surface(position), pressure))
+        """Return the nodal forces of a pressure jump on the mid-plane, scalar or (n,), to +y."""
+        return self._nodal(pressure_force(self._mid_plane(position), pressure))
 
     def rest_tension(self, v_squared: float) -> float:
         """Return the tension of the flat unloaded sheet at the prestretch."""
@@ -243,26 +267,6 @@ class Solid:
                        'reduce the voltage, the load or the time step')
 
 
-def _lengths(elements: int, first: float) -> np.ndarray:
-    """Return the shares (n,) of the chord: equal in the middle, growing from ``first``."""
-    place = np.minimum(np.arange(elements), np.arange(elements)[::-1])
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        length = np.minimum(middle, first * GROWTH ** np.minimum(place, 100.0))
-        low, high = (middle, high) if length.sum() < 1.0 else (low, middle)
-    return length / length.sum()
-
-
-def _mass(length: np.ndarray, sheet: Sheet, density: float) -> np.ndarray:
-    """Return nodal masses per span, a quarter of each element's at each of its nodes."""
-    quarter = 0.25 * density * sheet.initial_thickness / sheet.lateral_stretch * length
-    station = np.zeros(length.size + 1)
-    station[:-1] += quarter
-    station[1:] += quarter
-    return np.repeat(station, 2)
-
-
 def _fitted(solid: Solid, density: float) -> Solid:
     """Return a strip on lower pins whose interior rests at the prestretch, from one on faces."""
     target = solid.rest_tension(0.0)
@@ -273,7 +277,7 @@ def _fitted(solid: Solid, density: float) -> Solid:
         if abs(tension - target) <= 1.0e-9 * target:
             break
         length = hanging.length * (1.0 - (target - tension) / slope)
-        cut = replace(hanging, length=length, mass=_mass(length, solid.sheet, density))
+        cut = replace(hanging, length=length, mass=nodal_mass(length, solid.sheet, density))
         hanging = replace(cut, rest_position=statics.newton(cut, hanging.rest_position, 0.0))
     return hanging
 
