@@ -5,18 +5,19 @@
 from collections.abc import Mapping
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
+from std_srvs.srv import SetBool
 
 from dewing_control.closed_loop import controller, same_memory
 from dewing_control.settings import ControllerSettings
 from dewing_sim import harness, messages, parameters, qos
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.status import Status
 
 
 class ControllerNode(Node):
@@ -24,7 +25,8 @@ class ControllerNode(Node):
 
     A repeated stamp repeats the answer; an earlier one means that the simulator began anew, and
     so does the controller. Settings may change while it runs; the controller keeps what it
-    remembers, or begins at the present V^2 where its memory has to be of another form.
+    remembers, or begins at the present V^2 where its memory has to be of another form. Disabled,
+    it answers zero.
     """
 
     def __init__(self, parameters: Mapping[str, Any] | None = None, **options):
@@ -34,13 +36,14 @@ class ControllerNode(Node):
         self.identity: Identity | None = None
         self._law, self._memory = None, None
         self._stamp, self._v_squared = -1, 0.0
-        self._answers, self._saturated, self._complaint = 0, 0, ''
+        self._enabled, self._begun, self._answers, self._saturated = True, 0, 0, 0
+        self.status = Status(self, 'waiting for the case', self._values)
         self.add_on_set_parameters_callback(self._on_parameters)
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', qos.EVENTS)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
         self.create_subscription(JointState, 'measurement', self._on_measurement, qos.LATEST)
-        self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.create_service(SetBool, '~/enable', self._on_enable)
+        self.create_timer(1.0, self.status.report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _on_case(self, message: String):
         try:
@@ -48,8 +51,9 @@ class ControllerNode(Node):
             if identity != self.identity:
                 self._law = controller(self.settings, identity)
                 self.identity, self._stamp = identity, -1
+                self._say_running()
         except BadInput as error:
-            self._complain(str(error))
+            self.status.set(messages.WARN, str(error))
 
     def _on_measurement(self, message: JointState):
         """Answer; a measurement that comes before the case will be sent again."""
@@ -60,16 +64,21 @@ class ControllerNode(Node):
             try:
                 self._decide(messages.to_measurement(message), begin=stamp < self._stamp)
             except BadInput as error:
-                self._complain(str(error))
+                self.status.set(messages.WARN, str(error))
                 return
             self._stamp = stamp
+            self._say_running()
         qos.publish(self._command, messages.command(self._v_squared, message.header.stamp))
 
     def _decide(self, measurement, begin: bool):
         if begin or self._stamp < 0:
+            self._begun += 1
             self._memory = self._law.start(measurement.v_squared)
-        self._memory, self._v_squared = self._law.step(self._memory, measurement)
         self._answers += 1
+        if not self._enabled:
+            self._v_squared = 0.0
+            return
+        self._memory, self._v_squared = self._law.step(self._memory, measurement)
         limit = min(self.settings.command.voltage_limit**2, self.identity.v_squared_max)
         self._saturated += self._v_squared in (0.0, limit)
 
@@ -86,24 +95,24 @@ class ControllerNode(Node):
             self.settings = settings
         return answer
 
-    def _complain(self, sentence: str):
-        if sentence != self._complaint:
-            self._complaint = sentence
-            self.get_logger().warning(sentence)
-            self._report()
+    def _on_enable(self, request, response):
+        self._enabled = request.data
+        self._memory, self._stamp = None, -1        # the next answer begins anew
+        self._say_running()
+        response.success, response.message = True, 'enabled' if request.data else 'disabled'
+        return response
 
-    def _report(self):
-        level = messages.WARN if self._complaint or self.identity is None else messages.OK
-        waiting = 'waiting for the case' if self.identity is None else 'running'
-        values = dict(v_squared=self._v_squared, answers=self._answers,
-                      saturation_share=self._saturated / max(self._answers, 1))
-        self._diagnostics.publish(messages.diagnostics(
-            self.get_fully_qualified_name(), level, self._complaint or waiting, values,
-            self.get_clock().now().to_msg()))
+    def _say_running(self):
+        if self._law is not None:
+            self.status.set(messages.OK, 'running' if self._enabled else 'disabled: V^2 is zero')
+
+    def _values(self) -> dict[str, Any]:
+        return dict(kind=self.settings.kind, v_squared=self._v_squared, answers=self._answers,
+                    begun=self._begun, saturation_share=self._saturated / max(self._answers, 1))
 
     def interrupt(self):
         """Say goodbye in the diagnostics."""
-        self._complain('the controller was asked to stop')
+        self.status.set(messages.WARN, 'the controller was asked to stop')
 
 
 def settings_of(node: Node) -> ControllerSettings:

@@ -9,6 +9,7 @@ import numpy as np
 import yaml
 
 from dewing_sim.errors import BadInput
+from dewing_sim.files import new_file
 from dewing_sim.fluid.engines import STATES
 from dewing_sim.parameters import Case, from_mapping, to_mapping
 from dewing_sim.structure.dynamics import Motion
@@ -19,7 +20,7 @@ SECTIONS = ('flow', 'motion')
 
 
 def save(path: str | Path, state: State, case: Case) -> None:
-    """Write ``state`` and ``case``; a plain file replaces ``path`` only if it is writable."""
+    """Write ``state`` and ``case`` to ``path``, which is replaced at once or not at all."""
     arrays = {'format': FORMAT, 'case': yaml.safe_dump(to_mapping(case), sort_keys=False)}
     for field in dataclasses.fields(State):
         value = getattr(state, field.name)
@@ -28,7 +29,7 @@ def save(path: str | Path, state: State, case: Case) -> None:
                 arrays[f'{field.name}.{part.name}'] = getattr(value, part.name)
         else:
             arrays[field.name] = value
-    with open(path, 'wb') as file:
+    with new_file(path, overwrite=True) as file:
         np.savez(file, **arrays)
 
 

@@ -199,6 +199,8 @@ class SimulatorNode(Node):
         if self._overdue or self.status.level != messages.OK:
             self._overdue = False
             self.status.set(messages.OK, 'running')
+        if self.run.save_steps and self.lockstep.steps % self.run.save_steps == 0:
+            self.save_state()
         self._ask()
         end = self.run.duration
         if end and self.lockstep.outputs.time > end - 0.5 * self.plant.dt:
@@ -228,8 +230,8 @@ class SimulatorNode(Node):
         """Save the last good state and say where, or why not."""
         try:
             self.built.save(self.rescue, self.lockstep.state)
-        except OSError as error:
-            return f'its state could not be saved in {self.rescue} ({error.strerror})'
+        except (BadInput, OSError) as error:
+            return f'its state could not be saved: {error}'
         return f'state saved in {self.rescue}'
 
     def _report(self):

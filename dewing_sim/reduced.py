@@ -17,6 +17,7 @@ import numpy as np
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.files import new_file
 from dewing_sim.identity import loss_of_tension
 from dewing_sim.plant import SCALARS, Outputs
 
@@ -112,7 +113,7 @@ class Reduced:
 
     def save(self, path, state: State):
         """Write ``state`` to the npz file ``path``."""
-        with open(path, 'wb') as file:
+        with new_file(path, overwrite=True) as file:
             np.savez(file, step=state.step, x=state.x, v_squared=state.v_squared)
 
     def load(self, path) -> State:

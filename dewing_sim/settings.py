@@ -28,6 +28,7 @@ class Run:
         's', 'wait after which an unanswered measurement is published again', 0.05, 1.0e3)
     delivery_timeout: float = real(
         's', 'longest wait at the end for slow listeners to take every message', 0.0, 1.0e6)
+    save_steps: int = count('steps between two saves of the state, 0: at the end', 0, 10**9)
     step_count: int = count('steps that one call of the service step makes', 1, 1000000)
     scalar_rate: float = real('Hz', 'rate of clock, scalars and loads', 1.0e-3, 1.0e9)
     membrane_rate: float = real('Hz', 'rate of the membrane shape', 1.0e-3, 1.0e9)

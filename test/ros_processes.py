@@ -26,14 +26,15 @@ class Graph:
 
     def __init__(self, domain, folder):
         self.domain, self.folder, self.processes = domain, folder, []
+        folder.mkdir(exist_ok=True)
         self.model = folder / 'model.npz'
         reduced.save(self.model, first_mode(disturbance=0.05))
 
-    def start(self, name, settings=None):
+    def start(self, name, settings=None, **options):
         log = open(self.folder / f'{name}.txt', 'a')
         process = harness.start_node(
             MODULES[name], settings or {}, harness.environment(self.domain, str(self.folder)),
-            cwd=self.folder, stdout=log, stderr=log)
+            cwd=self.folder, stdout=log, stderr=log, **options)
         self.processes.append(process)
         return process
 

@@ -3,8 +3,10 @@
 """Nodes in one executor: the loop in ten lines, faults injected, services, live parameters."""
 
 import math
+import time
 
 import pytest
+from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from reduced_wing import CAMBER, first_mode
@@ -17,6 +19,7 @@ from dewing_control.node import ControllerNode
 from dewing_sim import harness, messages, qos, reduced
 from dewing_sim.errors import RunFailed
 from dewing_sim.identity import Identity
+from dewing_sim.lockstep import Deadlines
 from dewing_sim.node import SimulatorNode
 
 
@@ -169,6 +172,53 @@ def test_services_pause_step_reset_and_save(scripted, tmp_path):
     session.spin_until(lambda: simulator.lockstep.v_squared == 2.0e5, PATIENCE)
 
 
+def test_a_call_makes_as_many_steps_as_asked_for_and_goes_back_to_what_was_saved(
+        session, settings):
+    simulator = session.add(SimulatorNode, settings | {'run.mode': 'free', 'run.subscribers': 0})
+    session.spin_until(lambda: simulator.lockstep.steps > 0, PATIENCE)
+    simulator.pause(True)
+    client = simulator.create_client(Trigger, 'simulator/step')
+    before = simulator.lockstep.steps
+    answer, = simulator.set_parameters([Parameter('run.step_count', value=25)])
+    assert answer.successful and call(session, client, Trigger.Request()).success
+    assert simulator.lockstep.steps == before + 25 and simulator.reason == 'paused'
+    answer, = simulator.set_parameters([Parameter('run.step_count', value=0)])
+    assert not answer.successful and simulator.run.step_count == 25
+    assert simulator.save_state().startswith('state saved')
+    call(session, client, Trigger.Request())
+    restore = simulator.create_client(Trigger, 'simulator/restore')
+    assert call(session, restore, Trigger.Request()).success
+    assert simulator.lockstep.state.step == before + 25
+
+
+def test_a_failed_restore_says_why_and_changes_nothing(scripted):
+    session, simulator, script = scripted
+    client = script.create_client(Trigger, 'simulator/restore')
+    answer = call(session, client, Trigger.Request())
+    assert not answer.success and 'state.npz' in answer.message
+    assert simulator.lockstep.outputs.time == 0.0
+
+
+def test_real_time_is_paced_and_late_steps_and_answers_are_counted(session, settings):
+    simulator = session.add(SimulatorNode, settings | {
+        'run.mode': 'realtime', 'run.rate': 0.01, 'run.subscribers': 0, 'run.duration': 0.002})
+    began = time.monotonic()
+    session.spin_until(lambda: simulator.lockstep.steps == 10, PATIENCE)
+    assert simulator._deadlines.missed < 10
+    time.sleep(0.1)                 # ten periods in which nobody spins
+    session.spin_until(lambda: simulator.exit_status is not None, PATIENCE)
+    assert time.monotonic() - began > 0.2
+    assert simulator._deadlines.missed > 0 and simulator.lockstep.unanswered == 20
+
+
+def test_a_miss_counts_once_and_is_not_made_up_for():
+    deadlines = Deadlines(1.0)
+    deadlines.start(0.0)
+    for now in (1.0, 2.5, 3.0, 9.0, 10.0, 11.9):
+        deadlines.begin(now)
+    assert deadlines.missed == 1 and deadlines.due == 12.0
+
+
 def test_a_saved_state_is_restored_with_its_time_and_command(session, settings, tmp_path):
     plant = first_mode()
     plant.save(tmp_path / 'before.npz', plant.step(plant.rest(), 4.0e5))
@@ -218,3 +268,32 @@ def test_gains_change_live_and_bad_ones_are_refused_with_the_reason(session):
     assert answer.successful and controller.settings.pid.kp == 2.0
     answer, = controller.set_parameters([Parameter('pid.kp', value=-2.0)])
     assert not answer.successful and controller.settings.pid.kp == 2.0
+
+
+def test_a_disabled_controller_answers_zero_and_begins_anew_when_enabled(controlled):
+    session, controller, plant = controlled
+    first = [ask(session, controller, plant, step, 0.99) for step in range(3)]
+    client = plant.create_client(SetBool, 'controller/enable')
+    assert call(session, client, SetBool.Request(data=False)).success
+    assert controller.status.sentence == 'disabled: V^2 is zero'
+    assert ask(session, controller, plant, 3, 0.99) == 0.0
+    assert call(session, client, SetBool.Request(data=True)).success
+    again = [ask(session, controller, plant, step, 0.99) for step in range(4, 7)]
+    assert again == first and controller.status.sentence == 'running'
+
+
+def test_a_controller_under_a_storm_of_parameters_answers_every_measurement(controlled):
+    session, controller, plant = controlled
+    client = plant.create_client(SetParameters, 'controller/set_parameters')
+
+    def request(value):
+        return SetParameters.Request(parameters=[
+            Parameter('pid.kp', value=value).to_parameter_msg()])
+
+    session.spin_until(client.service_is_ready, PATIENCE)
+    for step in range(20):
+        for k in range(50):         # more than the queue of a service holds
+            client.call_async(request(float(k % 3) - 1.0))
+        ask(session, controller, plant, step, 0.99)
+    assert call(session, client, request(7.0)).results[0].successful
+    assert controller.settings.pid.kp == 7.0

@@ -56,7 +56,8 @@ def test_ten_thousand_steps_lose_and_mismatch_none(tmp_path):
 def test_a_killed_controller_is_reported_and_the_state_saved(tmp_path):
     with graph(tmp_path) as ros:
         path = ros.recorder()
-        simulator = ros.simulator(subscribers=2, command_timeout=0.5, hold_timeout=1.0)
+        simulator = ros.simulator(subscribers=2, command_timeout=0.5, hold_timeout=1.0,
+                                  delivery_timeout=5.0)
         controller = ros.start('controller')
         wait_until(lambda: simulated_time(path) > 0.02)
         kill(controller)
@@ -74,7 +75,7 @@ def test_a_killed_controller_is_reported_and_the_state_saved(tmp_path):
 def test_a_restarted_controller_carries_on_without_a_bump(tmp_path):
     with graph(tmp_path) as ros:
         path = ros.recorder()
-        simulator = ros.simulator(subscribers=2, duration=0.3)
+        simulator = ros.simulator(subscribers=2, duration=0.3, delivery_timeout=5.0)
         controller = ros.start('controller')
         wait_until(lambda: simulated_time(path) > 0.06)
         kill(controller)

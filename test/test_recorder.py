@@ -101,7 +101,7 @@ def test_rosbags_reads_a_recorded_run(tmp_path):
 def test_a_killed_recorder_leaves_a_readable_bag(tmp_path):
     with graph(tmp_path) as ros:
         path = ros.recorder()
-        ros.simulator(subscribers=2)
+        ros.simulator(subscribers=2, delivery_timeout=0.1)
         ros.start('controller')
         wait_until(lambda: simulated_time(path) > 0.05)
         kill(ros.processes[0])
