@@ -100,7 +100,7 @@ class Design:
         share[poles.imag <= 0.0] = 0.0
         if not share.any():
             raise BadInput('the model has no oscillating mode; identify it again')
-        rate = np.log(poles[np.argmax(share)]) / self.dt
+        rate = complex(np.log(poles[np.argmax(share)])) / self.dt
         stiffness = abs(rate)**2
         transition = linalg.expm(self.dt * np.array(
             [[0.0, 1.0, 0.0], [-stiffness, 2.0 * rate.real, stiffness], [0.0, 0.0, 0.0]]))
@@ -144,9 +144,9 @@ def _every(a: np.ndarray, b: np.ndarray, steps: int) -> tuple[np.ndarray, np.nda
 
 def _frequencies(design: Design) -> np.ndarray:
     nyquist = 0.5 / design.dt
-    poles = np.log(np.linalg.eigvals(design.a).astype(complex)) / (2.0 * np.pi * design.dt)
+    poles = np.linalg.eigvals(design.a)
+    modes = np.abs(np.log(poles[poles.imag > 0.0])) / (2.0 * np.pi * design.dt)
     spread = np.geomspace(1.0e-4, 0.3, 25)
-    local = [abs(pole) * (1.0 + sign * spread) for pole in poles if pole.imag > 0.0
-             for sign in (-1.0, 1.0)]
+    local = [mode * (1.0 + sign * spread) for mode in modes for sign in (-1.0, 1.0)]
     grid = np.concatenate([np.geomspace(0.1, nyquist, 500), *local])
     return np.unique(grid[(grid > 0.0) & (grid <= nyquist)])

@@ -11,6 +11,7 @@ white noise of a/a_ref of one. Ms holds at the tension of rest and at a lower on
 lowers the tension and with it every frequency.
 """
 
+import functools
 import itertools
 import math
 from dataclasses import dataclass
@@ -29,6 +30,7 @@ from dewing_sim.identity import Identity
 STEP_TIME = 0.05            # s
 FREQUENCY = 10.0            # Hz, of the disturbance
 LOAD = 0.05                 # a_ref, its amplitude
+LARGEST_MARGIN = 100.0      # dB, stated for a loop that no gain makes unstable
 NEGLIGIBLE = 1.0e-4         # a_ref: smaller amplitudes are not worth having
 RANGES = {
     'pid': {'pid.kp': (0.1, 30.0), 'pid.ki': (10.0, 1.0e5), 'pid.kd': (1.0e-3, 0.05),
@@ -85,7 +87,8 @@ class Judged:
                     'spectral_radius': float(np.abs(self.loop.poles).max())}
         return {
             'stable': True, 'ms_peak': self.peak, 'ms_at_rest': self.loop.peak,
-            'gain_margin_db': min(self.loop.gain_margin_db(), self.strained.gain_margin_db()),
+            'gain_margin_db': min(self.loop.gain_margin_db(), self.strained.gain_margin_db(),
+                                  LARGEST_MARGIN),
             'phase_margin_deg': min(self.loop.phase_margin_deg(),
                                     self.strained.phase_margin_deg()),
             'disturbance_rejection_10hz': abs(self.sensitivity),
@@ -141,8 +144,8 @@ def tune(settings: ControllerSettings, identity: Identity, model: Design, bounds
         changes = dict(zip(ranges, map(float, np.exp(logarithms))))
         return judge(with_gains(settings, changes), identity, model, strained)
 
-    start = parameters.to_mapping(settings)
-    first = np.log([np.clip(_get(start, name), *limits) for name, limits in ranges.items()])
+    first = np.log([np.clip(value_of(settings, name), *limits)
+                    for name, limits in ranges.items()])
     result = differential_evolution(
         lambda logarithms: _penalised(candidate(logarithms), bounds),
         [tuple(map(math.log, limits)) for limits in ranges.values()],
@@ -164,6 +167,17 @@ def printed_gains(identity: Identity) -> dict[str, float]:
     scale = identity.camber_mean / identity.v_squared_slack
     return {'kp': 4.0e11 * scale, 'ki': 2.3e15 * scale, 'kd': 7.5e5 * scale,
             'derivative_filter': 0.0}
+
+
+def pi_limit(model: Design, kp: float) -> float:
+    """Return the ki above which PI control of the main mode is unstable.
+
+    ki G0 = 2 zeta w (1 + kp G0), from Routh's criterion; a derivative gain adds kd G0 w^2 to
+    2 zeta w.
+    """
+    main = model.fundamental()
+    rate = np.log(np.linalg.eigvals(main.a).astype(complex)[0]) / main.dt
+    return float(-2.0 * rate.real * (1.0 + kp * main.static_gain) / main.static_gain)
 
 
 def with_gains(settings: ControllerSettings, changes: Mapping[str, float],
@@ -195,7 +209,6 @@ def _excess(judged: Judged, bounds: Bounds) -> float:
             + max(judged.loop.noise_gain / bounds.noise_gain - 1.0, 0.0))
 
 
-def _get(mapping: Mapping, name: str) -> float:
-    for key in name.split('.'):
-        mapping = mapping[key]
-    return mapping
+def value_of(settings: ControllerSettings, name: str) -> float:
+    """Return the parameter with the dotted ``name``."""
+    return functools.reduce(getattr, name.split('.'), settings)

@@ -115,6 +115,7 @@ def test_second_tone_adds_to_the_first(tmp_path, monkeypatch):
     assert np.array_equal(states[0].motion.position, states[1].motion.position)
 
 
+@pytest.mark.slow
 def test_command_writes_table_figure_and_metrics(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'cache'))
     setup = plan(tmp_path)
