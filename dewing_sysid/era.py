@@ -6,6 +6,7 @@ Conventions: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k]; Markov parameters
 h[k] = C A^(k-1) B, stored with shape (outputs, inputs, samples); rows of signals are channels.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,12 +68,18 @@ class HankelFactors:
         return Realisation(a, b, c, self.direct)
 
 
-def factorise(markov: np.ndarray, rows: int | None = None) -> HankelFactors:
+LARGEST = 150                           # block rows and columns that decompose in some 20 ms
+
+
+def factorise(markov: np.ndarray, rows: int | None = None, stride: int | None = None,
+              ) -> HankelFactors:
     """Decompose the Hankel matrix of ``markov`` (outputs, inputs, samples), h[0] = D first.
 
-    ``rows`` block rows of H0 leave samples - 1 - rows block columns; by default half the record
-    each, which uses all of it.  Outputs are divided by their root mean square first, so that
-    metres and lift coefficients weigh alike in the truncation.
+    Block (i, j) is h[1 + stride (i + j)] in H0 and the sample after it in H1: observability
+    and controllability of A^stride, A itself between them, so that a long record fits into a
+    small matrix.  By default ``rows`` is half of what the record holds and ``stride`` the least
+    that keeps them below `LARGEST`.  Outputs are divided by their root mean square first, so
+    that metres and lift coefficients weigh alike in the truncation.
     Raises `BadInput` for a record that is too short, not finite or without response.
     """
     h = np.asarray(markov, dtype=float)
@@ -80,11 +87,13 @@ def factorise(markov: np.ndarray, rows: int | None = None) -> HankelFactors:
         raise BadInput(f'Markov parameters of shape {h.shape}: expected (outputs, inputs, '
                        'samples)')
     samples = h.shape[2]
-    rows = (samples - 1) // 2 if rows is None else rows
-    columns = samples - 1 - rows
+    stride = max(1, math.ceil((samples - 1) / (2 * LARGEST))) if stride is None else stride
+    blocks = (samples - 3) // stride + 2
+    rows = blocks // 2 if rows is None else rows
+    columns = blocks - rows
     if rows < 1 or columns < 1:
-        raise BadInput(f'{samples} samples do not fill a Hankel matrix of {rows} block rows: '
-                       f'at least {max(rows, 1) + 2} are needed')
+        raise BadInput(f'{samples} samples do not fill a Hankel matrix of {max(rows, 1)} block '
+                       f'rows: at least {(max(rows, 1) - 1) * stride + 3} are needed')
     if not np.isfinite(h).all():
         raise BadInput('Markov parameters contain values that are not finite')
     scale = np.sqrt(np.mean(h[:, :, 1:]**2, axis=(1, 2)))
@@ -92,15 +101,15 @@ def factorise(markov: np.ndarray, rows: int | None = None) -> HankelFactors:
         raise BadInput(f'output {int(np.argmin(scale))} is constant: nothing to identify')
     scaled = h / scale[:, None, None]
     left, singular_values, right = linalg.svd(
-        _hankel(scaled[:, :, 1:-1], rows, columns), full_matrices=False)
+        _hankel(scaled[:, :, 1:-1], rows, columns, stride), full_matrices=False)
     return HankelFactors(left, singular_values, right,
-                         _hankel(scaled[:, :, 2:], rows, columns), h[:, :, 0], scale)
+                         _hankel(scaled[:, :, 2:], rows, columns, stride), h[:, :, 0], scale)
 
 
-def _hankel(h: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Return the block Hankel matrix with block (i, j) = h[i + j]."""
+def _hankel(h: np.ndarray, rows: int, columns: int, stride: int) -> np.ndarray:
+    """Return the block Hankel matrix with block (i, j) = h[stride (i + j)]."""
     outputs, inputs, _ = h.shape
-    blocks = h[:, :, np.add.outer(np.arange(rows), np.arange(columns))]
+    blocks = h[:, :, stride * np.add.outer(np.arange(rows), np.arange(columns))]
     return blocks.transpose(2, 0, 3, 1).reshape(rows * outputs, columns * inputs)
 
 
@@ -174,7 +183,8 @@ def reflect_unstable(realisation: Realisation) -> tuple[Realisation, np.ndarray]
     outside = np.abs(eigenvalues) > 1.0
     if not outside.any():
         return realisation, eigenvalues[outside]
-    moved = np.where(outside, 1.0 / eigenvalues.conj(), eigenvalues)
+    moved = eigenvalues.copy()
+    moved[outside] = 1.0 / eigenvalues[outside].conj()
     a = (vectors * moved) @ np.linalg.inv(vectors)
     return (Realisation(a.real, realisation.b, realisation.c, realisation.d),
             eigenvalues[outside])

@@ -151,6 +151,24 @@ def identify_plant(plant: Plant, start: Any, identity: Identity, settings: Setti
     return identify(planned.records(dict(zip(planned.inputs, outputs))), settings, identity)
 
 
+def concerns(found: Identification, settings: Settings) -> list[str]:
+    """Return a sentence for everything that makes the model doubtful."""
+    sentences, record = [], found.records[EXPERIMENT]
+    if found.model.spectral_radius >= 1.0:
+        sentences.append(f'the model is unstable, its spectral radius is '
+                         f'{found.model.spectral_radius:.5f}: try another order or window')
+    for name, departure in found.linearity.items():
+        if departure > settings.experiment.linearity_tolerance:
+            sentences.append(f'{name} responds to half the amplitude with a departure of '
+                             f'{100.0 * departure:.2g} %: take a smaller experiment.amplitude')
+    unsteady = np.ptp(record.baseline, axis=1) > np.ptp(record.y, axis=1)
+    if unsteady.any():
+        names = ', '.join(name for name, moves in zip(record.names, unsteady) if moves)
+        sentences.append(f'{names} moves more at rest than in response to V^2: the flow is not '
+                         'steady, and a linear model holds for a short time only')
+    return sentences
+
+
 def report(found: Identification) -> dict[str, Any]:
     """Return what is known of a model as nested words and finite numbers, for JSON."""
     model = found.model

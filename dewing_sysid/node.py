@@ -22,7 +22,7 @@ from dewing_sim.identity import Identity
 from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
 from dewing_sysid.experiment import save_records
-from dewing_sysid.identify import Identification, identify
+from dewing_sysid.identify import Identification, concerns, identify
 from dewing_sysid.settings import NODE_DEFAULTS, NodeSettings, Settings
 
 WATCH_PERIOD = 0.1          # s, wall
@@ -186,11 +186,11 @@ class SysidNode(Node):
         if self.node_settings.output:
             model.save(self.node_settings.output)
         fits = ', '.join(f'{name} {fit:.1f} %' for name, fit in model.fit['window'].items())
-        sentence = f'order {model.order} model: fit of {fits}'
+        doubts = concerns(self.found, self.settings)
+        sentence = '; '.join([f'order {model.order} model: fit of {fits}', *doubts])
+        self._set_status(common.WARN if doubts else common.OK, sentence)
         if self.node_settings.afterwards == 'exit':
             self._finish(0, sentence)
-        else:
-            self._set_status(common.OK, sentence)
 
     def _restore(self):
         """Bring the simulator back to its operating point."""

@@ -79,6 +79,25 @@ def test_markov_parameters_of_random_stable_systems(seed, order, inputs, outputs
     assert np.allclose(reproduced(factors.realise(order), 50), h, atol=1e-9 * np.abs(h).max())
 
 
+@pytest.mark.parametrize('stride', [2, 3, 7])
+def test_a_thinned_hankel_matrix_gives_the_same_system(stride):
+    a, b, c = random_stable(16, 4, 2, 2)
+    h = markov_parameters(a, b, c, 101)
+    factors = era.factorise(h, stride=stride)
+    assert max(factors.shifted.shape) <= 2 * (51 // stride + 1)
+    model = factors.realise(4)
+    assert np.allclose(reproduced(model, 101), h, atol=1e-8 * np.abs(h).max())
+    assert np.allclose(np.sort_complex(np.linalg.eigvals(model.a)),
+                       np.sort_complex(np.linalg.eigvals(a)))
+
+
+def test_a_long_record_is_thinned_by_itself():
+    h = markov_parameters(*random_stable(17, 4, 1, 1), 1000)
+    factors = era.factorise(h)
+    assert max(factors.shifted.shape) <= era.LARGEST + 1
+    assert np.allclose(reproduced(factors.realise(4), 1000), h, atol=1e-8 * np.abs(h).max())
+
+
 def test_agreement_with_python_control():
     control = pytest.importorskip('control')
     h = markov_parameters(*random_stable(5, 8, 1, 1), 61)
@@ -151,11 +170,11 @@ def test_okid_withstands_noise():
 
 
 def test_unstable_poles_are_mirrored_and_reported():
-    poles = np.array([1.05, 0.9])
-    model = era.Realisation(np.diag(poles), np.ones((2, 1)), np.ones((1, 2)), np.zeros((1, 1)))
+    poles = np.array([1.05, 0.9, 0.0])
+    model = era.Realisation(np.diag(poles), np.ones((3, 1)), np.ones((1, 3)), np.zeros((1, 1)))
     mirrored, originals = era.reflect_unstable(model)
     assert originals == pytest.approx([1.05])
-    assert np.sort(np.linalg.eigvals(mirrored.a)) == pytest.approx([0.9, 1.0 / 1.05])
+    assert np.sort(np.linalg.eigvals(mirrored.a)) == pytest.approx([0.0, 0.9, 1.0 / 1.05])
     assert era.reflect_unstable(mirrored)[1].size == 0
 
 

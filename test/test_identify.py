@@ -13,7 +13,7 @@ from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
 from dewing_sysid import experiment, figures, plan
-from dewing_sysid.identify import identify, identify_plant, judge, report
+from dewing_sysid.identify import concerns, identify, identify_plant, judge, report
 from dewing_sysid.model import Model, nrmse_fit
 from dewing_sysid.settings import Settings
 
@@ -85,6 +85,22 @@ def test_report_is_json_with_the_names_of_the_command(pulsed):
     assert written['order'] == 8
     assert written['spectral_radius'] < 1.0
     assert len(written['poles_hz']) == len(written['poles_damping']) == 5
+
+
+def test_a_good_model_raises_no_concern(pulsed):
+    assert concerns(pulsed, settings()) == []
+
+
+def test_doubts_are_put_into_words(pulsed):
+    record = pulsed.records['experiment']
+    wavy = replace(record, outputs=record.outputs + np.linspace(0.0, 1.0, len(record.u)),
+                   baseline=record.baseline + np.linspace(0.0, 1.0, len(record.u)))
+    doubtful = replace(pulsed, model=replace(pulsed.model, a=1.1 * pulsed.model.a),
+                       records={'experiment': wavy}, linearity={'cl': 0.5})
+    unstable, nonlinear, unsteady = concerns(doubtful, settings())
+    assert 'unstable' in unstable
+    assert 'cl responds to half the amplitude with a departure of 50 %' in nonlinear
+    assert unsteady.startswith('camber_mean, camber_max, cl moves more at rest')
 
 
 def test_figures_are_written(pulsed, tmp_path):

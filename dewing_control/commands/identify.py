@@ -10,6 +10,7 @@ the node sysid.
 
 import argparse
 import time
+import warnings
 from typing import Any
 
 from dewing_control import options, results
@@ -62,6 +63,8 @@ def run(arguments: argparse.Namespace) -> None:
         found = identify.identify(records, settings, identity)
     else:
         found, identity, began = _experiment(arguments, settings, case, names)
+    for sentence in identify.concerns(found, settings):
+        warnings.warn(sentence, RuntimeWarning, stacklevel=1)
     metrics = identify.report(found) | {'seconds': time.perf_counter() - began}
     if arguments.out:
         found.model.save(arguments.out, arguments.force)
