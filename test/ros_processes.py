@@ -90,11 +90,14 @@ def last_status(path, name='/dewing/simulator'):
     return statuses[-1], {item.key: item.value for item in statuses[-1].values}
 
 
-def offline(steps):
-    """Return the measurements of the same loop in this process, columns by name."""
+def offline(steps, changes=None):
+    """Return the measurements of the same loop in this process, columns by name.
+
+    ``changes`` are those of the controller's settings.
+    """
     plant = first_mode(disturbance=0.05)
     identity = Identity.of('reduced', plant, plant.rest(), plant.v_squared_max, {})
-    law = controller(parameters.load('controller', ControllerSettings), identity)
+    law = controller(parameters.load('controller', ControllerSettings, changes), identity)
     rows = [Measurement.of(plant.observe(plant.rest()))]
     rows += [Measurement.of(o) for _, o in closed_loop(plant, plant.rest(), law, steps)]
     return dict(zip(Measurement._fields, np.array(rows).T))
