@@ -82,22 +82,22 @@ def bode(model: Model, sweep: Record | None = None):
 def _draw_response(axes, frequency, response, style, label):
     for column, values in enumerate(response):
         axes[0, column].loglog(frequency, np.abs(values), style, ms=3, label=label)
-        phase = np.degrees(np.unwrap(np.angle(values)))
-        axes[1, column].semilogx(frequency, phase, style, ms=3)
+        lag = np.mod(45.0 - np.degrees(np.angle(values)), 360.0) - 45.0   # no flips about zero
+        axes[1, column].semilogx(frequency, -lag, style, ms=3)
 
 
 def swept_sine(sweep: Record) -> tuple[np.ndarray, np.ndarray]:
     """Return frequencies (Hz) and the estimate Y/U (outputs, frequencies) of a chirp record.
 
     Both are differenced before the transform, which leaves the ratio as it is and shrinks the
-    leakage of what has not decayed; only frequencies with at least a tenth of the median
-    power of the swept band are returned.
+    leakage of what has not decayed; only frequencies with at least 2 % of the largest power,
+    about those of the swept band, are returned.
     """
     u = np.fft.rfft(np.diff(sweep.u, prepend=0.0))
     y = np.fft.rfft(np.diff(sweep.y, axis=1, prepend=0.0))
     frequency = np.fft.rfftfreq(len(sweep.u), sweep.dt)
     power = np.abs(u)**2
-    strong = (power > 0.1 * np.median(np.sort(power)[len(power) // 2:])) & (frequency > 0.0)
+    strong = (power > 0.02 * power.max()) & (frequency > 0.0)
     return frequency[strong], y[:, strong] / u[strong]
 
 

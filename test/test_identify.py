@@ -112,6 +112,7 @@ def test_figures_are_written(pulsed, tmp_path):
 
 def test_swept_sine_estimates_the_frequency_response(pulsed):
     frequency, estimate = figures.swept_sine(pulsed.records['chirp'])
+    assert 5.0 <= frequency.min() < 15.0 and 380.0 < frequency.max() < 800.0
     band = (frequency > 30.0) & (frequency < 300.0)
     exact = pulsed.model.frequency_response(frequency[band])
     assert np.count_nonzero(band) > 40
