@@ -32,7 +32,9 @@ setup(
         ('share/ament_index/resource_index/packages', ['resource/dewing']),
         ('share/dewing', ['package.xml']),
         ('share/dewing/config', [
-            f'config/{path.name}' for path in sorted(SOURCE.glob('config/*.yaml'))]),
+            f'config/{path.name}' for path in sorted(SOURCE.glob('config/*.*'))
+            if path.suffix in ('.yaml', '.rviz', '.json')]),
+        ('share/dewing/launch', ['launch/dewing.launch.py']),
         ('lib/dewing', [f'scripts/{name}' for name in EXECUTABLES]),
     ],
     install_requires=[

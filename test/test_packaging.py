@@ -49,7 +49,8 @@ def test_every_data_file_exists_and_the_index_marker_is_among_them(setup):
         assert names and all((PROJECT / name).is_file() for name in names)
     assert data['share/ament_index/resource_index/packages'] == ['resource/dewing']
     assert {Path(name) for name in data['share/dewing/config']} == {
-        path.relative_to(PROJECT) for path in PROJECT.glob('config/*.yaml')}
+        path.relative_to(PROJECT) for path in PROJECT.glob('config/*.*') if path.suffix != '.py'}
+    assert data['share/dewing/launch'] == ['launch/dewing.launch.py']
 
 
 @pytest.mark.parametrize('name', EXECUTABLES)
