@@ -33,6 +33,7 @@ test: lint
 
 bench: venv
 	@$(BIN)/dewing bench $(BENCH_OPTIONS)
+	@$(BIN)/python benchmarks/roundtrip.py
 
 clean:
 	rm -rf '$(VENV)' build dist install log *.egg-info .pytest_cache .ruff_cache .hypothesis

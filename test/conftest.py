@@ -22,8 +22,9 @@ os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join(
 
 
 # Where there is no ROS, everything offline is still tested.
-ROS_TESTS = ['test_demo.py', 'test_faults.py', 'test_harness.py', 'test_messages.py',
-             'test_nodes.py', 'test_recorder.py', 'test_ros_docs.py', 'test_sysid_node.py']
+ROS_TESTS = ['test_demo.py', 'test_examples.py', 'test_faults.py', 'test_harness.py',
+             'test_messages.py', 'test_nodes.py', 'test_recorder.py', 'test_ros_docs.py',
+             'test_sysid_node.py']
 collect_ignore = [] if find_spec('rclpy') else ROS_TESTS
 
 
