@@ -16,6 +16,7 @@ from dewing_control.comparison_figures import draw
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import RunFailed
+from dewing_sim.identity import loss_of_tension
 from dewing_sim.parameters import Disturbance
 from dewing_sim.plant import Outputs
 
@@ -100,6 +101,7 @@ def test_every_scenario_changes_a_case_that_is_valid(name):
     scenario = scenarios.SCENARIOS[name]
     case = parameters.load(scenario.case or 'paper', changes=scenario.changes)
     assert case.actuation.voltage == 0.0
+    assert case.actuation.voltage_limit**2 < loss_of_tension(case)
 
 
 def test_second_tone_adds_to_the_first(tmp_path, monkeypatch):
