@@ -46,7 +46,7 @@ def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) ->
     from dewing_control.node import ControllerNode
     from dewing_sim import harness
     from dewing_sim.node import SimulatorNode
-    times, processes = np.empty(steps), []
+    times, processes = np.full(steps, np.nan), []
 
     class Timed(SimulatorNode):
         """Notes when it steps."""

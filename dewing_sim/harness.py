@@ -210,7 +210,7 @@ def _yaml_word(value: Any) -> str:
     return f"'{value}'" if isinstance(value, (str, os.PathLike)) else str(value)
 
 
-def stop_node(process: subprocess.Popen, patience: float = 10.0) -> int:
+def stop_node(process: subprocess.Popen, patience: float = 30.0) -> int:
     """Ask the process group to end by SIGINT, kill it after ``patience`` s; return its status."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGINT)

@@ -11,10 +11,14 @@ import time
 
 import numpy as np
 import pytest
+from ros_processes import PATIENCE
 
 from dewing_control import demo_results
+from dewing_control.closed_loop import closed_loop, controller
 from dewing_control.demo_results import Run
+from dewing_control.settings import ControllerSettings
 from dewing_sim import bag, parameters
+from dewing_sim.build import build_wing
 from dewing_sim.identity import Identity
 
 COARSE = ('--grid', 'fast', '--set', 'numerics.trim_time=2.0', '--set', 'membrane.elements=32')
@@ -59,10 +63,20 @@ def start(folder, *options):
          *options], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+def assert_as_offline(folder, steps):
+    """Check the wing's closed loop over DDS bit for bit against the loop in this process."""
+    built = build_wing(parameters.load(folder / 'case.yaml'))
+    law = controller(parameters.load('controller', ControllerSettings), built.identity)
+    recorded = bag.series(folder / 'closed_loop.mcap', demo_results.MEASUREMENT)
+    for step, (_, outputs) in enumerate(closed_loop(built.plant, built.rest, law, steps), 1):
+        assert outputs.v_squared == recorded['v_squared'][step]
+        assert outputs.camber_mean == recorded['camber_mean'][step]
+
+
 @pytest.mark.slow
 def test_the_demo_leaves_bags_figure_and_metrics(tmp_path):
     process = start(tmp_path, '--duration', '0.02', '--json', str(tmp_path / 'copy.json'))
-    said, complaint = process.communicate(timeout=300)
+    said, complaint = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, complaint
     assert 'mean camber change' in said and 'closed_loop.png' in said
     metrics = json.loads((tmp_path / 'demo' / 'metrics.json').read_text())
@@ -72,20 +86,22 @@ def test_the_demo_leaves_bags_figure_and_metrics(tmp_path):
     assert metrics['closed_loop']['camber_mean'] > 0.0 > metrics['open_loop']['camber_mean']
     assert (tmp_path / 'demo' / 'closed_loop.png').read_bytes().startswith(b'\x89PNG')
     again = start(tmp_path)
-    assert again.wait(60) == 2
+    assert again.wait(PATIENCE) == 2
     assert 'exists; --force writes over it' in again.communicate()[1]
+    assert_as_offline(tmp_path / 'demo', 200)
 
 
 @pytest.mark.slow
-def test_an_interrupted_demo_keeps_what_it_recorded(tmp_path):
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_demo_keeps_what_it_recorded(tmp_path, number):
     process = start(tmp_path, '--duration', '5.0')
     recording = tmp_path / 'demo' / 'open_loop.mcap'
-    deadline = time.monotonic() + 120.0
+    deadline = time.monotonic() + PATIENCE
     while not (recording.exists() and sum(1 for _ in bag.read(recording)) > 100):
         assert process.poll() is None and time.monotonic() < deadline
         time.sleep(0.2)
-    process.send_signal(signal.SIGINT)
-    _, complaint = process.communicate(timeout=60)
+    process.send_signal(number)
+    _, complaint = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert f'kept {recording} up to 0.' in complaint and complaint.endswith('interrupted\n')
     run = bag.series(recording, demo_results.MEASUREMENT)
