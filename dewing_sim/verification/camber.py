@@ -25,8 +25,9 @@ def runs(engine: str, quick: bool) -> dict[str, PlateRun]:
         return chosen
     chosen |= {
         'camber 2 %': PlateRun(engine, 'standard', 4.0, 20.0, camber=0.02),
-        'camber 10 %': PlateRun(engine, 'standard', 4.0, 30.0, camber=0.10, dt=0.002),
-        'camber 10 %, fine': PlateRun(engine, 'fine', 4.0, 30.0, camber=0.10, dt=0.002),
+        'camber 10 %': PlateRun(engine, 'standard', 4.0, 30.0, camber=0.10, dt=0.002, lift=0.9),
+        'camber 10 %, fine': PlateRun(engine, 'fine', 4.0, 30.0, camber=0.10, dt=0.002,
+                                      lift=0.9),
     }
     return chosen | {f'slope {reynolds:g}': PlateRun(
         engine, 'standard', 0.0, 20.0, reynolds=reynolds, camber=SMALL,

@@ -15,6 +15,7 @@ from dewing_sim.wing import Wing
 
 STUDIES_4 = 'finite-volume and conformal studies, 0.3948 and 0.393'
 STUDIES_8 = 'finite-volume and conformal studies'
+STUDIES_LINES = f'{STUDIES_8}: 23.6-24.8, 47-49.4, 71-74'
 ESTIMATE = 'estimate from ideal flow, which overrates the lift of camber'
 LINES = (24.2, 48.2, 72.5)          # Hz, found by the studies within 1.5 Hz
 LIGHT = 33.0                        # kg/m^3, mass ratio 0.03
@@ -39,18 +40,22 @@ class WingRun:
     case: str
     duration: float = 0.0
     density: float | None = None    # of the elastomer in place of the shipped one
+    dt: float | None = None         # s, in place of the shipped time step
     grid: str = 'standard'
 
     @property
     def cost(self) -> float:
         """Expected milliseconds."""
-        return 2.0 * step_cost(self.engine, self.grid) * (30.0 + self.duration) / 0.004
+        steps = (30.0 + self.duration) * (1.0e-4 / (self.dt or 1.0e-4)) / 0.004
+        return 2.0 * step_cost(self.engine, self.grid) * steps
 
     def __call__(self) -> WingResult:
         """Trim, then march."""
         changes = {'numerics.engine': self.engine, 'numerics.grid': self.grid}
         if self.density:
             changes['membrane.density'] = self.density
+        if self.dt:
+            changes['numerics.time_step'] = self.dt
         wing = Wing(parameters.load(self.case, changes=changes))
         state = wing.rest()
         rows = [_row(wing.observe(state))]
@@ -73,7 +78,9 @@ def runs(engine: str, quick: bool) -> dict[str, WingRun]:
         return chosen
     return chosen | {'light': WingRun(engine, 'paper', density=LIGHT),
                      'soft': WingRun(engine, 'soft'),
-                     'paper_alpha8': WingRun(engine, 'paper_alpha8', 60.0)}
+                     'paper_alpha8': WingRun(engine, 'paper_alpha8', 60.0),
+                     'paper_alpha8, half the time step': WingRun(
+                         engine, 'paper_alpha8', 40.0, dt=5.0e-5)}
 
 
 def checks(engine: str, results: dict[str, WingResult]) -> list[Check]:
@@ -82,7 +89,8 @@ def checks(engine: str, results: dict[str, WingResult]) -> list[Check]:
     if 'soft' not in results:
         return found
     return [*found, *_light(engine, results), *_soft(engine, results['soft']),
-            *_alpha8(engine, results['paper_alpha8'])]
+            *(check for name, result in results.items() if name.startswith('paper_alpha8')
+              for check in _alpha8(engine, name, result))]
 
 
 def _paper(engine: str, result: WingResult) -> list[Check]:
@@ -124,27 +132,30 @@ def _soft_reference() -> float:
     return case.flow.dynamic_pressure * m.chord**2 / (8.0 * tension)
 
 
-def _alpha8(engine: str, result: WingResult) -> list[Check]:
+def _alpha8(engine: str, name: str, result: WingResult) -> list[Check]:
+    """Judge the shipped case; with another time step the values are reported."""
+    judged = name == 'paper_alpha8'
     found = []
-    for name, values, reference, gate, scale in (
+    for quantity, values, reference, gate, scale in (
             ('mean Cl', result.cl, 0.906, 0.02, None),
             ('mean y*', result.y_star, 0.99, 0.02, None),
-            ('x/c of the largest camber', result.place, 0.43, 0.015, 1.0)):
+            ('x/c of the largest camber', result.place, 0.43, 0.02, None)):
         mean = block_mean(values)
-        found.append(Check(f'paper_alpha8: {name}', engine, mean.value, reference, STUDIES_8,
-                           gate, scale, mean.error))
-    found.append(Check('paper_alpha8: rms of Cl', engine, result.cl.std(), None, 'reported'))
-    for signal, values in (('Cl', result.cl), ('y*', result.y_star)):
-        lines = spectrum.peaks(values, result.dt, most=5)
-        found += [Check(f'paper_alpha8: line {k + 1} of {signal} in Hz', engine, line,
-                        _known(line), f'{STUDIES_8}: 23.6-24.8, 47-49.4, 71-74')
-                  for k, line in enumerate(lines)]
+        found.append(Check(f'{name}: {quantity}', engine, mean.value, reference, STUDIES_8,
+                           gate if judged else None, scale, mean.error))
+    found.append(Check(f'{name}: rms of Cl', engine, result.cl.std(), None, 'reported'))
+    return [*found, *_lines(engine, f'{name}: line of Cl', result.cl, result.dt),
+            *_lines(engine, f'{name}: line of y*', result.y_star, result.dt)]
+
+
+def _lines(engine: str, name: str, signal: np.ndarray, dt: float) -> list[Check]:
+    """Return all lines in Hz, the known ones beside their references."""
+    found = []
+    for line in sorted(spectrum.peaks(signal, dt, most=6)):
+        near = next((known for known in LINES if math.isclose(line, known, abs_tol=3.0)), None)
+        found.append(Check(f'{name} near {near or line:.0f} Hz', engine, line, near,
+                           'reported' if near is None else STUDIES_LINES))
     return found
-
-
-def _known(line: float) -> float | None:
-    """Return the line of the studies within 3 Hz."""
-    return next((known for known in LINES if math.isclose(line, known, abs_tol=3.0)), None)
 
 
 def draw(figure, results: dict[str, dict[str, WingResult]]) -> None:
@@ -166,6 +177,8 @@ STUDY = Study(
     'coupled', 'Coupled wings',
     'The shipped cases from their rest states. At 8 degrees means are over 60 c/U with the '
     'standard error from eight blocks; the lines are all peaks of the windowed spectrum above a '
-    'thousandth of the strongest, strongest first. The paper prints 0.396, 0.33, 0.40 at 4 '
-    'degrees; 0.83, 0.85 and 26 and 51 Hz at 8 degrees.',
+    'thousandth of the strongest, six at most. Half the time step is reported beside: on the '
+    'standard finite-volume grid the shipped one admits a shedding of doubled period with 5 % more '
+    'lift, which neither half of it nor the conformal engine shows. The paper prints 0.396, 0.33, '
+    '0.40 at 4 degrees; 0.83, 0.85 and 26 and 51 Hz at 8 degrees.',
     runs, checks, draw)

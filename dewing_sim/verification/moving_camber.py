@@ -13,6 +13,7 @@ from dewing_sim.verification.study import Check, Study
 
 REFERENCE = 0.4577 - 0.0791j
 LIFT_SLOPE = 6.0                    # of the whole plate at 4 deg, for the start
+SETTLED = 6                         # periods at the end that count
 SOURCE = 'conformal-map vorticity code (study, not published)'
 
 
@@ -20,13 +21,14 @@ SOURCE = 'conformal-map vorticity code (study, not published)'
 class ForcedCamberRun:
     """Camber f + a sin(2 pi St t) at ``alpha`` (deg); returns the complex response of Cl.
 
-    Its real part is in phase with sin, its imaginary part with cos, over the second half.
+    Its real part is in phase with sin, its imaginary part with cos, over the last six periods;
+    it has settled after 18.
     """
 
     engine: str
     grid: str
-    periods: int
     steps: int = 170                # in a period
+    periods: int = 24
     mean: float = 0.01
     amplitude: float = 0.005
     strouhal: float = 1.44
@@ -55,7 +57,7 @@ class ForcedCamberRun:
 
         history = [(time, fluid.loads(flow).cl) for time, flow in march(
             fluid, wall, self.periods / self.strouhal, 0.5 * LIFT_SLOPE * alpha)]
-        time, cl = np.array(history[self.periods // 2 * self.steps:]).T
+        time, cl = np.array(history[-SETTLED * self.steps:]).T
         return response(time, cl, self.omega)
 
 
@@ -69,12 +71,12 @@ def response(time: np.ndarray, signal: np.ndarray, omega: float) -> complex:
 
 def runs(engine: str, quick: bool) -> dict[str, ForcedCamberRun]:
     """Return the forced oscillation on one grid, or on two and about a flat plate."""
+    standard = {'standard': ForcedCamberRun(engine, 'standard')}
     if quick:
-        return {'standard': ForcedCamberRun(engine, 'standard', 16)}
-    return {'standard': ForcedCamberRun(engine, 'standard', 30),
-            'fine': ForcedCamberRun(engine, 'fine', 16, steps=300),
-            'flat': ForcedCamberRun(engine, 'standard', 16, mean=0.0, alpha=0.0,
-                                    reynolds=5000.0)}
+        return standard
+    return standard | {
+        'fine': ForcedCamberRun(engine, 'fine', 300),
+        'flat': ForcedCamberRun(engine, 'standard', mean=0.0, alpha=0.0, reynolds=5000.0)}
 
 
 def checks(engine: str, results: dict[str, complex]) -> list[Check]:
@@ -108,7 +110,8 @@ STUDY = Study(
     'moving_camber', 'Forced camber',
     'A parabolic plate at 4 degrees whose camber is 1 % + 0.5 % sin(2 pi St t) at St = 1.44, '
     'close to the first mode of the `paper` membrane. Both parts of the complex response are '
-    'judged by the amplitude of the reference; the third row states their distance in full. About '
-    'a flat plate ideal flow has a closed form, four fifths of it added mass; at this frequency '
-    'the viscous trailing edge lags behind it.',
+    'judged by the amplitude of the reference; the third row states their distance in full. Both '
+    'engines agree with each other four times better than with the reference, whose quadrature '
+    'is passed in the first ten periods. About a flat plate ideal flow has a closed form, most of '
+    'it added mass; at this frequency the viscous trailing edge lags behind it.',
     runs, checks)
