@@ -18,6 +18,7 @@ STUDIES_8 = 'finite-volume and conformal studies'
 STUDIES_LINES = f'{STUDIES_8}: 23.6-24.8, 47-49.4, 71-74'
 ESTIMATE = 'estimate from ideal flow, which overrates the lift of camber'
 LINES = (24.2, 48.2, 72.5)          # Hz, found by the studies within 1.5 Hz
+SHOWN = 0.2                         # s of the figure
 LIGHT = 33.0                        # kg/m^3, mass ratio 0.03
 
 
@@ -163,11 +164,12 @@ def draw(figure, results: dict[str, dict[str, WingResult]]) -> None:
     history, lines = figure.subplots(1, 2)
     for engine, found in results.items():
         result = found['paper_alpha8']
-        time = result.dt * np.arange(len(result.cl))
-        history.plot(1.0e3 * time, result.cl, label=engine, lw=0.7)
+        shown = result.cl[-round(SHOWN / result.dt):]
+        history.plot(1.0e3 * result.dt * np.arange(len(shown)), shown, label=engine)
         frequency, power = spectrum.power_spectrum(result.cl, result.dt)
-        shown = (frequency > 0.0) & (frequency < 200.0)
-        lines.semilogy(frequency[shown], power[shown], label=engine)
+        low = (frequency > 0.0) & (frequency < 200.0)
+        lines.semilogy(frequency[low], power[low], label=engine)
+    lines.set_ylim(1.0e-9, 1.0)
     history.set(xlabel='t in ms', ylabel='Cl', title='paper_alpha8')
     lines.set(xlabel='f in Hz', ylabel='power of Cl')
     history.legend()

@@ -88,6 +88,8 @@ def draw(figure, results: dict[str, dict[str, PlateResult]]) -> None:
     drag.axhline(0.0636, color='k', ls='--', lw=1)
     lift.set(xlabel='smallest cell / c', ylabel='Cl', title='4 deg')
     drag.set(xlabel='smallest cell / c', ylabel='Cd', title='4 deg')
+    for axes in (lift, drag):
+        axes.minorticks_off()
     lift.legend()
 
 

@@ -92,16 +92,16 @@ def pressure_distance(result: PlateResult) -> float:
 def draw(figure, results: dict[str, dict[str, PlateResult]]) -> None:
     """Draw the pressure jump at 4 degrees and the lift at 8 degrees."""
     pressure, lift = figure.subplots(1, 2)
-    if REFERENCE.is_file():
-        pressure.plot(*_reference(), 'k--', lw=1, label=HDG)
     for engine, found in results.items():
         result = found['4 deg']
         centres = 0.5 * (result.columns[1:] + result.columns[:-1])
-        pressure.plot(centres, result.dcp, label=engine)
+        pressure.semilogx(centres, result.dcp, label=engine)
         shedding = found['8 deg']
         late = shedding.time > shedding.time[-1] - 8.0
         lift.plot(shedding.time[late], shedding.cl[late], label=engine)
-    pressure.set(xlabel='x/c', ylabel='pressure jump / q', ylim=(0.0, 4.0), title='4 deg')
+    if REFERENCE.is_file():
+        pressure.semilogx(*_reference(), 'k--', lw=1, label=HDG)
+    pressure.set(xlabel='x/c', ylabel='pressure jump / q', xlim=(1.0e-4, 1.0), title='4 deg')
     lift.set(xlabel='t U / c', ylabel='Cl', title='8 deg')
     pressure.legend()
 
