@@ -22,10 +22,12 @@ ARRAYS_READ, ARRAYS_WRITTEN = 9, 5
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    presets = options.numerics_field('grid').metadata['options']
+    engines = options.numerics_field('engine').metadata['options']
     parser.add_argument('--case', default='paper', help='case (default: paper)')
-    parser.add_argument('--presets', nargs='+', default=list(presets), metavar='NAME',
-                        help=f'grid presets: {", ".join(presets)} (default: all)')
+    parser.add_argument('--engine', default='finite_volume', metavar='NAME',
+                        help=f'flow solver: {", ".join(engines)} (default: finite_volume)')
+    parser.add_argument('--presets', nargs='+', metavar='NAME',
+                        help='grid presets (default: all of the engine)')
     parser.add_argument('--steps', type=int, default=400, help='coupled steps (default: 400)')
     options.add_results(parser)
 
@@ -33,21 +35,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Time the presets, print and write what was found."""
     options.within('--steps', arguments.steps, BLOCK, 10**6, 'steps')
-    known = dict.fromkeys(options.numerics_field('grid').metadata['options'])
-    for preset in arguments.presets:
-        options.one_of('--presets', preset, known)
     if arguments.json:
         check_free(arguments.json, arguments.force)
     presets = {}
-    for preset in arguments.presets:
-        presets[preset] = time_preset(arguments.case, preset, arguments.steps)
+    for preset in chosen_presets(arguments):
+        presets[preset] = time_preset(arguments.case, arguments.engine, preset, arguments.steps)
         if not arguments.quiet:
             print(preset)
             flat = presets[preset] | presets[preset]['parts']
             results.print_table({f'  {key}': flat[key] for key in flat if key != 'parts'})
     if arguments.json:
-        results.write_json(arguments.json, {'machine': machine(), 'presets': presets},
-                           arguments.force)
+        results.write_json(arguments.json, {
+            'machine': machine(), 'engine': arguments.engine, 'presets': presets},
+            arguments.force)
+
+
+def chosen_presets(arguments: argparse.Namespace) -> list[str]:
+    """Return the presets to time; raise `BadInput` for an unknown engine or preset."""
+    from dewing_sim.fluid.engines import GRIDS
+    known = options.one_of('--engine', arguments.engine, GRIDS)
+    for preset in arguments.presets or []:
+        options.one_of('--presets', preset, dict.fromkeys(known))
+    return arguments.presets or list(known)
 
 
 def machine() -> dict[str, Any]:
@@ -61,11 +70,11 @@ def machine() -> dict[str, Any]:
             'numba': numba.__version__}
 
 
-def time_preset(case: str, preset: str, steps: int) -> dict[str, Any]:
-    """Return cells, times and their parts of ``case`` on one grid preset."""
+def time_preset(case: str, engine: str, preset: str, steps: int) -> dict[str, Any]:
+    """Return cells, times and their parts of ``case`` on one grid preset of an engine."""
     from dewing_sim.wing import Wing
     wing = Wing(parameters.load(case, changes={
-        'numerics.engine': 'finite_volume', 'numerics.grid': preset, 'numerics.trim_time': 2.0}))
+        'numerics.engine': engine, 'numerics.grid': preset, 'numerics.trim_time': 2.0}))
     state = wing.rest()
     v_squared = wing.case.actuation.voltage**2
     laps, passes = Laps(), 0
@@ -83,23 +92,33 @@ def time_preset(case: str, preset: str, steps: int) -> dict[str, Any]:
 
 def time_parts(wing: Any, state: Any, steps: int) -> dict[str, float]:
     """Return the times (ms) of the parts of a step that can run alone."""
+    from dewing_sim import interface
+    fluid, membrane, motion = wing.fluid, wing.membrane, state.motion
+    wall = interface.wall_of(fluid.columns, membrane.surface(motion.position),
+                             membrane.surface(motion.velocity))
+    prediction = fluid.predict(state.flow, wall)
+    parts = {
+        'predict_ms': lambda: fluid.predict(state.flow, wall),
+        'correct_ms': lambda: fluid.correct(prediction, wall.velocity),
+        'observe_ms': lambda: wing.observe(state),
+    }
+    if wing.case.numerics.engine == 'finite_volume':
+        parts |= finite_volume_parts(fluid, state.flow, wall)
+    return {name: best(work, steps) for name, work in parts.items()}
+
+
+def finite_volume_parts(fluid: Any, flow: Any, wall: Any) -> dict[str, Callable[[], Any]]:
+    """Return what `predict` and `correct` spend most of their time on."""
     import numpy as np
 
-    from dewing_sim import interface
     from dewing_sim.fluid.finite_volume import mapping
-    fluid, flow = wing.fluid, state.flow
-    wall = interface.wall_of(fluid.columns, state.motion.position, state.motion.velocity)
     metrics = mapping.metrics(fluid.grid, wall)
-    prediction = fluid.predict(flow, wall)
     still = np.zeros(len(fluid.columns) - 1)
     solution = fluid.poisson.forward(flow.p)
     return {
-        'predict_ms': best(lambda: fluid.predict(flow, wall), steps),
-        'correct_ms': best(lambda: fluid.correct(prediction, wall.velocity), steps),
-        'momentum_ms': best(lambda: fluid.momentum(flow, metrics, wall), steps),
-        'pressure_forward_ms': best(lambda: fluid.poisson.forward(flow.p), steps),
-        'pressure_backward_ms': best(lambda: fluid.poisson.backward(*solution, still), steps),
-        'observe_ms': best(lambda: wing.observe(state), steps),
+        'momentum_ms': lambda: fluid.momentum(flow, metrics, wall),
+        'pressure_forward_ms': lambda: fluid.poisson.forward(flow.p),
+        'pressure_backward_ms': lambda: fluid.poisson.backward(*solution, still),
     }
 
 
