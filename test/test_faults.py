@@ -180,7 +180,7 @@ def test_a_full_disk_ends_the_recording_and_not_the_run(tmp_path):
     with graph(tmp_path) as ros:
         path = tmp_path / 'run.mcap'
         recorder = ros.start('recorder', {'output': path}, preexec_fn=limit_files)
-        simulator = ros.simulator(duration=0.2, subscribers=1, mode='free', delivery_timeout=1.0)
+        simulator = ros.simulator(duration=5.0, subscribers=1, mode='free', delivery_timeout=1.0)
         assert recorder.wait(PATIENCE) == 1
         assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
     assert 'run.mcap: recording stopped (File too large)' in ros.said('recorder')
