@@ -15,12 +15,13 @@ import numba
 import numpy as np
 
 from dewing_sim import parameters
-from dewing_sim.errors import BadInput, Slack
+from dewing_sim.errors import BadInput
 from dewing_sim.scales import Scales
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
 from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.sheet import SI, Overstress, Response, Sheet
+from dewing_sim.structure.taut import Taut
 from dewing_sim.structure.viscosity import Prony
 
 
@@ -78,7 +79,7 @@ def _assemble_tangent(edges, tension, stiffness):
 
 
 @dataclass(frozen=True, eq=False)
-class Membrane:
+class Membrane(Taut):
     """A prestretched sheet between pinned edges at (0, 0) and (chord, 0).
 
     ``rest_position`` (n+1, 2) is the flat prestretched state without load; ``mass`` (n+1,) is
@@ -233,27 +234,6 @@ class Membrane:
     def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
         """Return the nodal forces (n+1, 2) of a pressure jump, scalar or (n,), pushing to +y."""
         return pressure_force(position, pressure)
-
-    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
-        """Raise `Slack` with element, tension and voltages if any tension is not positive."""
-        tension = self.tension(position, v_squared)
-        k = int(np.argmin(tension))
-        if tension[k] > 0.0:
-            return
-        self._raise_slack(k, tension[k], position, v_squared)
-
-    def require_bearable(self, position: np.ndarray, v_squared: float) -> None:
-        """Raise `Slack` if V^2 takes all tension at the typical stretch of ``position``."""
-        stretch = float(np.median(self.stretch(position)))
-        tension = float(self.sheet.respond([stretch], v_squared).tension[0])
-        if tension <= 0.0:
-            self._raise_slack(self.elements // 2, tension, position, v_squared)
-
-    def _raise_slack(self, k: int, tension: float, position: np.ndarray, v_squared: float):
-        limit = self.sheet.loss_of_tension_v_squared(self.stretch(position)[k])
-        raise Slack(f'slack membrane: element {k} has tension {tension:.6g} at '
-                    f'{math.sqrt(v_squared):.6g} V and loses it at {math.sqrt(limit):.6g} V; '
-                    'lower the voltage or raise the prestretch')
 
     def equilibrium(self, pressure, v_squared: float, follower: bool = True) -> np.ndarray:
         """Return the static position (n+1, 2) under a pressure jump, scalar or (n,).

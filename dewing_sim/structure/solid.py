@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim import parameters
-from dewing_sim.errors import BadInput, Diverged, Slack
+from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.scales import Scales
 from dewing_sim.structure import solid_assembly as assembly
 from dewing_sim.structure import statics
@@ -26,6 +26,7 @@ from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.sheet import SI, Sheet
 from dewing_sim.structure.solid_element import BALANCED, LOCKED
 from dewing_sim.structure.strip import lengths, nodal_mass, straight_edges
+from dewing_sim.structure.taut import Taut
 
 HALF_BAND = 7               # couplings of a degree of freedom on either side
 EDGE_LENGTH = 2.0           # of the first element, in deformed thicknesses
@@ -43,7 +44,7 @@ class Response(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Solid:
+class Solid(Taut):
     """A prestretched strip of hexahedra between (0, 0) and (chord, 0).
 
     ``support`` is ``lower`` (the lower side of the edges is pinned) or ``face`` (the whole faces
@@ -220,27 +221,6 @@ class Solid:
         """Return the total stretches of the line of centres, (n,)."""
         centres = position.reshape(-1, 2, 2).mean(axis=1)
         return np.hypot(*np.diff(centres, axis=0).T) / self.length
-
-    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
-        """Raise `Slack` with element, tension and voltages if any tension is not positive."""
-        tension = self.tension(position, v_squared)
-        k = int(np.argmin(tension))
-        if tension[k] > 0.0:
-            return
-        self._raise_slack(k, tension[k], position, v_squared)
-
-    def require_bearable(self, position: np.ndarray, v_squared: float) -> None:
-        """Raise `Slack` if V^2 takes all tension at the typical stretch of ``position``."""
-        stretch = float(np.median(self.stretch(position)))
-        tension = float(self.sheet.respond([stretch], v_squared).tension[0])
-        if tension <= 0.0:
-            self._raise_slack(self.elements // 2, tension, position, v_squared)
-
-    def _raise_slack(self, k: int, tension: float, position: np.ndarray, v_squared: float):
-        limit = self.sheet.loss_of_tension_v_squared(self.stretch(position)[k])
-        raise Slack(f'slack membrane: element {k} has tension {tension:.6g} at '
-                    f'{math.sqrt(v_squared):.6g} V and loses it at {math.sqrt(limit):.6g} V; '
-                    'lower the voltage or raise the prestretch')
 
     def equilibrium(self, pressure, v_squared: float, follower: bool = True) -> np.ndarray:
         """Return the static position under a pressure jump, see `statics.equilibrium`."""
