@@ -6,11 +6,9 @@ Each run is a simulator, a recorder and, closed, a controller, in a ROS domain o
 results are computed from the recorded bags.
 """
 
-import signal
 import sys
 import tempfile
 from argparse import Namespace
-from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +20,7 @@ from dewing_control import demo_results, options
 from dewing_control.progress import bar
 from dewing_control.results import write_json
 from dewing_control.settings import ControllerSettings
-from dewing_sim import bag, parameters
+from dewing_sim import bag, harness, parameters
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.files import check_free
 from dewing_sim.parameters import Case
@@ -80,16 +78,17 @@ def perform(demo: Demo, overwrite: bool = False) -> dict[str, Any]:
         path.unlink(missing_ok=True)
     demo.out.mkdir(parents=True, exist_ok=True)
     (demo.out / 'case.yaml').write_text(parameters.to_yaml(demo.case), encoding='utf-8')
-    previous = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        trim(demo)
-        for name in RUNS:
-            record(demo, name)
+        with harness.Stop() as stop:
+            trim(demo)
+            stop.orderly = True
+            for name in RUNS:
+                record(demo, name, stop)
+                if stop.asked:
+                    raise KeyboardInterrupt
     except KeyboardInterrupt:
         report_kept(demo)
         raise
-    finally:
-        signal.signal(signal.SIGTERM, previous)
     return evaluate(demo, began)
 
 
@@ -100,9 +99,8 @@ def trim(demo: Demo) -> None:
         Wing(demo.case).rest(show)
 
 
-def record(demo: Demo, name: str) -> None:
-    """Run one of `RUNS` to its end and leave its bag."""
-    from dewing_sim import harness
+def record(demo: Demo, name: str, stop: harness.Stop) -> None:
+    """Run one of `RUNS` to its end, or until ``stop`` is asked for, and leave its bag."""
     closed = name == 'closed_loop'
     with ExitStack() as stack:
         domain = stack.enter_context(harness.reserved_domain())
@@ -125,17 +123,12 @@ def record(demo: Demo, name: str) -> None:
         session = stack.enter_context(harness.Session(domain))
         clock = session.watch_clock()
         with bar(name.replace('_', ' '), quiet=demo.quiet) as show:
-            wait(simulator, session, lambda: show(clock.time, demo.duration, clock.time))
-        if simulator.returncode:
+            while simulator.poll() is None and not stop.asked:
+                session.executor.spin_once(timeout_sec=GLANCE)
+                show(clock.time, demo.duration, clock.time)
+        if simulator.poll():
             said = (folder / 'dewing_sim.node.txt').read_text().strip().splitlines()
             raise RunFailed(f"{name}: {said[-1] if said else 'the simulator failed'}")
-
-
-def wait(simulator: Popen, session: Any, show: Callable[[], None]) -> None:
-    """Spin ``session`` until the simulator has ended."""
-    while simulator.poll() is None:
-        session.executor.spin_once(timeout_sec=GLANCE)
-        show()
 
 
 def report_kept(demo: Demo) -> None:

@@ -22,7 +22,9 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from math import inf
 from pathlib import Path
+from threading import current_thread, main_thread
 from time import monotonic
 from typing import Any
 
@@ -75,14 +77,20 @@ class Session:
         self.executor.add_node(node)
         return node
 
-    def spin_until(self, condition: Callable[[], bool], timeout: float) -> None:
-        """Spin until ``condition()``; raise `RunFailed` after ``timeout`` s of wall time."""
+    def spin_until(self, condition: Callable[[], bool], timeout: float = inf) -> None:
+        """Spin until ``condition()``; raise `RunFailed` after ``timeout`` s of wall time.
+
+        A signal meanwhile raises `KeyboardInterrupt` between two callbacks.
+        """
         deadline = monotonic() + timeout
-        while not condition():
-            remaining = deadline - monotonic()
-            if remaining <= 0.0:
-                raise RunFailed(f'the condition did not hold within {timeout:g} s')
-            self.executor.spin_once(timeout_sec=min(SPIN, remaining))
+        with Stop(orderly=True) as stop:
+            while not condition():
+                remaining = deadline - monotonic()
+                if remaining <= 0.0:
+                    raise RunFailed(f'the condition did not hold within {timeout:g} s')
+                self.executor.spin_once(timeout_sec=min(SPIN, remaining))
+                if stop.asked:
+                    raise KeyboardInterrupt
 
     def watch_clock(self) -> 'ClockWatch':
         """Return a node that knows the simulated time published in this domain."""
@@ -117,10 +125,10 @@ def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
     ``interrupt()``, which is called on SIGINT and SIGTERM while ROS still works. Bad parameters
     give one sentence on standard error and status 2, failures status 1.
     """
-    stop = Stop()
     try:
-        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        return _spin(make(), stop)
+        with Stop() as stop:
+            rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+            return _spin(make(), stop)
     except (DewingError, OSError, RuntimeError) as error:
         print('dewing:', ' '.join(str(error).split()), file=sys.stderr)
         return 2 if isinstance(error, BadInput) or not rclpy.ok() else 1
@@ -131,13 +139,26 @@ def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
 
 
 class Stop:
-    """SIGINT and SIGTERM: an exception at once, or once ``orderly`` a note for the first."""
+    """SIGINT and SIGTERM inside a ``with``: an exception at once, or once ``orderly`` a note.
 
-    def __init__(self):
-        """Take over both signals."""
-        self.orderly, self.asked = False, False
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._note)
+    rclpy loses an exception that a handler raises while a callback runs, hence the note. The
+    second signal always raises. Python handles signals in its main thread: elsewhere this is void.
+    """
+
+    def __init__(self, orderly: bool = False):
+        """Note the first signal if ``orderly``."""
+        self.orderly, self.asked = orderly, False
+        self._previous: dict[int, Any] = {}
+
+    def __enter__(self) -> 'Stop':
+        if current_thread() is main_thread():
+            self._previous = {number: signal.signal(number, self._note)
+                              for number in (signal.SIGINT, signal.SIGTERM)}
+        return self
+
+    def __exit__(self, *_error):
+        for number, handler in self._previous.items():
+            signal.signal(number, handler)
 
     def _note(self, _number, _frame):
         if self.asked or not self.orderly:

@@ -3,6 +3,8 @@
 """Nodes in one executor: the loop in ten lines, faults injected, services, live parameters."""
 
 import math
+import os
+import signal
 import time
 
 import pytest
@@ -91,6 +93,15 @@ def test_a_closed_loop_in_ten_lines_is_the_loop_offline(session, settings):
 def test_spinning_ends_with_a_sentence_when_the_condition_does_not_come(session):
     with pytest.raises(RunFailed, match=r'did not hold within 0\.3 s'):
         session.spin_until(lambda: False, 0.3)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_not_lost_in_a_callback(session, number):
+    session.watch_clock().create_timer(0.05, lambda: os.kill(os.getpid(), number))
+    handler = signal.getsignal(number)
+    with pytest.raises(KeyboardInterrupt):
+        session.spin_until(lambda: False, PATIENCE)
+    assert signal.getsignal(number) == handler
 
 
 @pytest.mark.parametrize('v_squared', [math.nan, math.inf, -1.0, 1251.0**2])
