@@ -100,6 +100,20 @@ class Grid:
         """Distance of the cell centres on both sides of each eta-face (ny + 1,)."""
         return _centre_distances(self.dy)
 
+    @cached_property
+    def following_f(self) -> np.ndarray:
+        """How far the xi-faces (nx + 1,) follow the nearest edge of the membrane: 1 on it."""
+        return self._following(self.x)
+
+    @cached_property
+    def following_c(self) -> np.ndarray:
+        """How far the column centres (nx,) follow the nearest edge of the membrane."""
+        return self._following(self.xc)
+
+    def _following(self, x: np.ndarray) -> np.ndarray:
+        outside = np.maximum(self.x[self.leading] - x, x - self.x[self.trailing])
+        return np.exp(-np.maximum(0.0, outside)**2)
+
 
 def _centre_distances(cells: np.ndarray) -> np.ndarray:
     """Return centre-to-centre distances; half a cell at both ends."""

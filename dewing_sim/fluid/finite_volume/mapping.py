@@ -13,6 +13,7 @@ import numpy as np
 from dewing_sim.errors import Diverged
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.finite_volume.grid import Grid
+from dewing_sim.fluid.kernels import kernel
 
 
 class Metrics(NamedTuple):
@@ -48,30 +49,42 @@ def decay(grid: Grid) -> Decay:
 
 def metrics(grid: Grid, wall: Wall) -> Metrics:
     """Return the metric factors for a wall; beyond the edges its end heights decay."""
-    height_f = _extend(grid, wall.height)
-    height_c = 0.5 * (height_f[1:] + height_f[:-1])
-    if not np.abs(height_f).max() < 0.8:        # J > 0 needs |Y| < 1.16
-        raise Diverged(f'the membrane reached {np.abs(height_f).max():.3g} chords of deflection; '
+    deflection = np.abs(wall.height).max()
+    if not deflection < 0.8:                    # J > 0 needs |Y| < 1.16
+        raise Diverged(f'the membrane reached {deflection:.3g} chords of deflection; '
                        'the moving grid admits 0.8: lower the load or the time step')
-    slope_c = np.diff(height_f) / grid.dx
-    slope_f = np.zeros_like(height_f)
-    slope_f[1:-1] = np.diff(height_c) / grid.dxf[1:-1]
-    return Metrics(height_f, height_c, slope_f, slope_c, grid_velocity(grid, wall))
+    return Metrics(*_heights_and_slopes(wall.height, grid.following_f, grid.leading,
+                                        grid.dx, grid.dxf), grid_velocity(grid, wall))
 
 
 def grid_velocity(grid: Grid, wall: Wall) -> np.ndarray:
     """Return Y_t at the column centres (nx,)."""
-    upstream, downstream = _decays(grid, grid.xc[:grid.leading], grid.xc[grid.trailing:])
-    return np.concatenate((wall.edge_velocity[0] * upstream, wall.velocity,
-                           wall.edge_velocity[1] * downstream))
+    before, behind = wall.edge_velocity
+    return _extend(before, wall.velocity, behind, grid.following_c, grid.leading)
 
 
-def _extend(grid: Grid, height: np.ndarray) -> np.ndarray:
-    upstream, downstream = _decays(grid, grid.x[:grid.leading], grid.x[grid.trailing + 1:])
-    return np.concatenate((height[0] * upstream, height, height[-1] * downstream))
+@kernel
+def _heights_and_slopes(height, following_f, leading, dx, dxf):
+    nx = len(dx)
+    height_f = _extend(height[0], height, height[-1], following_f, leading)
+    height_c, slope_c, slope_f = np.empty(nx), np.empty(nx), np.zeros(nx + 1)
+    for i in range(nx):
+        height_c[i] = 0.5 * (height_f[i] + height_f[i + 1])
+        slope_c[i] = (height_f[i + 1] - height_f[i]) / dx[i]
+    for i in range(1, nx):
+        slope_f[i] = (height_c[i] - height_c[i - 1]) / dxf[i]
+    return height_f, height_c, slope_f, slope_c
 
 
-def _decays(grid: Grid, before: np.ndarray, behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return how far the grid follows the edges at stations before and behind the plate."""
-    return (np.exp(-(before - grid.x[grid.leading])**2),
-            np.exp(-(behind - grid.x[grid.trailing])**2))
+@kernel
+def _extend(before, values, behind, following, leading):
+    """Return ``values`` on the plate, and the decaying values of its ends beside it."""
+    out = np.empty(len(following))
+    trailing = leading + len(values)
+    for i in range(leading):
+        out[i] = before * following[i]
+    for i in range(leading, trailing):
+        out[i] = values[i - leading]
+    for i in range(trailing, len(out)):
+        out[i] = behind * following[i]
+    return out
