@@ -68,6 +68,12 @@ class Lqg:
 
     def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
         """Return the next memory and V^2, which is never negative nor above the limit."""
+        reference, z, scale = self.observe(memory, measurement)
+        return self.command(reference, z, scale, self._wanted(z, reference))
+
+    def observe(self, memory: Memory, measurement: Measurement,
+                ) -> tuple[float, np.ndarray, float]:
+        """Return the ramped reference, the corrected state, and the camber in w = V^2 camber."""
         camber = getattr(measurement, self.output) / self.camber_reference
         reference = ramp(memory.reference, camber, self.target,
                          self.rate * self.observer.design.dt)
@@ -75,12 +81,14 @@ class Lqg:
         z = memory.z
         if z is None:
             z = self.observer.begin(camber, memory.command * scale)
-        z = self.observer.correct(z, camber)
-        limit = self.v_squared_max / self.v_squared_reference
-        command = min(max(self._wanted(z, reference) / scale, 0.0), limit)
-        z = self.observer.predict(z, command * scale)
+        return reference, self.observer.correct(z, camber), scale
+
+    def command(self, reference: float, z: np.ndarray, scale: float, wanted: float,
+                ) -> tuple[Memory, float]:
+        """Return the next memory and V^2 for a ``wanted`` w, within the limits of V^2."""
+        command = min(max(wanted / scale, 0.0), self.v_squared_max / self.v_squared_reference)
         v_squared = min(command * self.v_squared_reference, self.v_squared_max)
-        return Memory(reference, z, command), v_squared
+        return Memory(reference, self.observer.predict(z, command * scale), command), v_squared
 
     @cached_property
     def gain(self) -> np.ndarray:

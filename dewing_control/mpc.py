@@ -23,8 +23,7 @@ from scipy import sparse
 from dewing_control import lqg
 from dewing_control.design import Design
 from dewing_control.loop import Compensator
-from dewing_control.lqg import LEAST_CAMBER, Lqg
-from dewing_control.reference import ramp
+from dewing_control.lqg import Lqg
 from dewing_control.settings import ControllerSettings, Predictive
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
@@ -136,22 +135,13 @@ class Mpc:
 
     def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
         """Return the next memory and V^2, which is never negative nor above the limit."""
-        base, last = self.base, memory.base
-        camber = getattr(measurement, base.output) / base.camber_reference
-        reference = ramp(last.reference, camber, base.target,
-                         base.rate * base.observer.design.dt)
-        scale = max(camber, LEAST_CAMBER)
-        z = last.z
-        if z is None:
-            z = base.observer.begin(camber, last.command * scale)
-        z = base.observer.correct(z, camber)
-        limit = base.v_squared_max / base.v_squared_reference
-        w, primal, dual = self._solve(memory, z, self.govern(z, reference, limit * scale),
-                                      last.command * scale, limit * scale)
-        command = min(max(w / scale, 0.0), limit)
-        z = base.observer.predict(z, command * scale)
-        v_squared = min(command * base.v_squared_reference, base.v_squared_max)
-        return Memory(lqg.Memory(reference, z, command), primal, dual), v_squared
+        base = self.base
+        reference, z, scale = base.observe(memory.base, measurement)
+        w_max = scale * base.v_squared_max / base.v_squared_reference
+        w, primal, dual = self._solve(memory, z, self.govern(z, reference, w_max),
+                                      memory.base.command * scale, w_max)
+        held, v_squared = base.command(reference, z, scale, w)
+        return Memory(held, primal, dual), v_squared
 
     def govern(self, z: np.ndarray, reference: float, w_max: float) -> float:
         """Return w_r - u0 for the reference nearest to ``reference`` that is ever attainable.
