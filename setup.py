@@ -54,12 +54,16 @@ setup(
             'ros-jazzy-rmw-fastrtps-cpp',
         )],
         'mpc': ['osqp>=1.0'],
+        'sweep': ['distributed>=2024.1', 'xarray>=2024.1'],
+        'docs': ['furo>=2024.8', 'myst-parser>=4.0', 'sphinx>=8.0', 'sphinx-autoapi>=3.4'],
         'test': [
             'control>=0.10',
+            'distributed>=2024.1',
             'hypothesis>=6.60',
             'osqp>=1.0',
             'pytest>=7.4',
             'pytest-timeout>=2.1',
+            'xarray>=2024.1',
         ],
         'lint': [
             'flake8>=6.0',

@@ -5,6 +5,7 @@
 import numpy as np
 
 STEADY = 1.0e-4     # a relative range below which the lines are those of rounding and iteration
+SHEDDING = 5.0e-3   # of the mean lift: swings below it are no vortex shedding
 
 
 def power_spectrum(signal: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
@@ -32,6 +33,17 @@ def peaks(signal: np.ndarray, dt: float, most: int = 5, floor: float = 1.0e-3) -
     found, _ = find_peaks(power, height=floor * power.max())
     strongest = found[np.argsort(power[found])[::-1][:most]]
     return [float(frequency[k] + _offset(power[k - 1:k + 2]) * frequency[1]) for k in strongest]
+
+
+def shedding_lines(cl: np.ndarray, dt: float) -> list[float]:
+    """Return the `peaks` of a lift coefficient (n,), none if it hardly swings.
+
+    The trend is taken out first. Frequencies are in the inverse of the unit of ``dt``.
+    """
+    from scipy.signal import detrend
+    swing = detrend(cl)
+    sheds = swing.std() > SHEDDING * max(abs(np.mean(cl)), 0.1)
+    return peaks(swing, dt) if sheds else []
 
 
 def _offset(power: np.ndarray) -> float:

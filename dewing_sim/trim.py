@@ -82,12 +82,17 @@ def fingerprint(wing: Wing) -> str:
     case = to_mapping(wing.case)
     del case['disturbance'], case['actuation']['voltage_limit']
     digest = hashlib.sha256(yaml.safe_dump(case).encode())
-    package = Path(__file__).parent
-    for source in sorted([*package.glob('fluid/**/*.py'), *package.glob('structure/*.py'),
-                          *(package / name for name in ('interface.py', 'plate.py', 'scales.py',
-                                                        'trim.py', 'wing.py'))]):
-        digest.update(source.read_bytes())
+    digest.update(solver_sources())
     return digest.hexdigest()[:24]
+
+
+def solver_sources() -> bytes:
+    """Return the text of the modules that compute a step and the rest state."""
+    package = Path(__file__).parent
+    sources = [*package.glob('fluid/**/*.py'), *package.glob('structure/*.py'),
+               *(package / name for name in ('interface.py', 'plate.py', 'scales.py', 'trim.py',
+                                             'wing.py'))]
+    return b''.join(source.read_bytes() for source in sorted(sources))
 
 
 def cache_folder() -> Path:

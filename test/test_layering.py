@@ -13,7 +13,7 @@ FILES = sorted(path.relative_to(PROJECT) for package in CHAIN
                for path in (PROJECT / package).rglob('*.py'))
 ROS = {'rclpy', 'builtin_interfaces', 'rcl_interfaces', 'ament_index_python'}
 ROS_FILES = {'node.py', 'messages.py', 'qos.py', 'services.py', 'harness.py', 'recorder.py'}
-HEAVY = {'control', 'matplotlib', 'mcap', 'mcap_ros2', 'osqp', 'rosbags'}
+HEAVY = {'control', 'distributed', 'matplotlib', 'mcap', 'mcap_ros2', 'osqp', 'rosbags', 'xarray'}
 
 
 def imported(path: Path, everywhere: bool = True) -> set[str]:

@@ -15,8 +15,6 @@ from dewing_control import options, results
 from dewing_control.progress import Laps, bar, until_interrupted
 from dewing_sim.files import check_free, new_file
 
-STEADY = 5.0e-3         # of the mean lift: swings below it are no vortex shedding
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
@@ -97,14 +95,11 @@ def _deliver(arguments: argparse.Namespace, plate: Any, loads: list, laps: Laps)
 def _metrics(arguments: argparse.Namespace, plate: Any, late: list, laps: Laps) -> dict:
     import numba
     import numpy as np
-    from scipy.signal import detrend
 
-    from dewing_sim.spectrum import peaks
+    from dewing_sim.spectrum import shedding_lines
     cl, cd, cm = (np.array([getattr(instant, name) for instant in late])
                   for name in ('cl', 'cd', 'cm'))
-    swing = detrend(cl)
-    sheds = swing.std() > STEADY * max(abs(cl.mean()), 0.1)
-    lines = peaks(swing, plate.dt) if sheds else []
+    lines = shedding_lines(cl, plate.dt)
     return {
         'alpha': arguments.alpha, 'camber': arguments.camber, 're': arguments.re,
         'cl_mean': float(cl.mean()), 'cl_rms': float(cl.std()),

@@ -129,6 +129,7 @@ def _deliver(arguments: argparse.Namespace, case: Case, loop: Loop, history, lap
 def _metrics(arguments, case: Case, loop: Loop, history, laps: Laps) -> dict:
     import numba
 
+    from dewing_control.run_metrics import averages
     from dewing_sim.spectrum import peaks, relative
     end = float(history.time[-1])
     start = 0.5 * end if arguments.skip is None or arguments.skip >= end else arguments.skip
@@ -137,18 +138,11 @@ def _metrics(arguments, case: Case, loop: Loop, history, laps: Laps) -> dict:
     return {
         'case': arguments.case, 'engine': case.numerics.engine, 'grid': case.numerics.grid,
         'dt': loop.plant.dt, 'steps': len(history), 'duration': end, 'averaged_from': start,
-        'cl_mean': float(late.cl.mean()), 'cl_rms': float(late.cl.std()),
-        'cd_mean': float(late.cd.mean()), 'cm_mean': float(late.cm.mean()),
-        'y_star': float(late.camber_max.mean()) / loop.plant.reference_deflection,
-        'camber_max': float(late.camber_max.mean()),
-        'camber_max_x_c': float(late.camber_max_position.mean()),
-        'camber_mean': float(late.camber_mean.mean()),
+        **averages(late, loop.plant.reference_deflection),
         'camber_mean_relative': mean, 'camber_amplitude_relative': amplitude,
-        'tension': float(late.tension.mean()),
         'v_min': float(late.voltage.min()), 'v_max': float(late.voltage.max()),
         'rtf': end / laps.total, 'ms_per_step': 1.0e3 * laps.best(),
         'threads': numba.get_num_threads(),
-        'coupling_iterations_mean': float(late.coupling_iterations.mean()),
         'spectrum_peaks_hz': peaks(late.cl, loop.plant.dt),
         'camber_peaks_hz': peaks(late.camber_mean, loop.plant.dt),
     }
