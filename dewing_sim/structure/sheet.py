@@ -188,7 +188,8 @@ class Sheet:
             return f'{where}: the deformation is not finite; reduce the time step or the load'
         if status == _LOCKED:
             return (f'{where}: I1bar - 3 reaches the Gent limit '
-                    f'{self.elastomer.gent_limit:.6g}; reduce the load or the prestretch')
+                    f'{self.elastomer.gent_limit:.6g}; '
+                    'reduce the load, the prestretch or the time step')
         return f'{where}: no thickness balances the Maxwell stress; reduce the voltage'
 
     def loss_of_tension_v_squared(self, stretch: float) -> float:

@@ -242,7 +242,7 @@ class Solid(Taut):
         if status == LOCKED:
             raise Diverged(f'{where}: I1bar - 3 reaches the Gent limit '
                            f'{self.sheet.elastomer.gent_limit:.6g}; '
-                           'reduce the load or the prestretch')
+                           'reduce the load, the prestretch or the time step')
         raise Diverged(f'{where}: the element turns inside out or its thickness pulls in; '
                        'reduce the voltage, the load or the time step')
 
