@@ -185,7 +185,7 @@ STUDY = Study(
     'coupled', 'Coupled wings',
     'The shipped cases from their rest states. At 8 degrees means are over 60 c/U with the '
     'standard error from eight blocks; the lines are all peaks of the windowed spectrum above a '
-    'thousandth of the strongest, six at most. Twice the time step, the paper\'s, is reported '
+    "thousandth of the strongest, six at most. Twice the time step, the paper's, is reported "
     'beside: on the standard finite-volume grid it admits a shedding of doubled period with 5 % '
     'more lift, which neither half of it nor the conformal engine shows. The paper prints 0.396, '
     '0.33, 0.40 at 4 degrees; 0.83, 0.85 and 26 and 51 Hz at 8 degrees.',
