@@ -54,6 +54,7 @@ setup(
             'ros-jazzy-rmw-fastrtps-cpp',
         )],
         'mpc': ['osqp>=1.0'],
+        'peers': ['ngsolve>=6.2'],
         'sweep': ['distributed>=2024.1', 'xarray>=2024.1'],
         'docs': ['furo>=2024.8', 'myst-parser>=4.0', 'sphinx>=8.0', 'sphinx-autoapi>=3.4'],
         'test': [
