@@ -15,7 +15,7 @@ from dewing_sim.parameters import Case, from_mapping, to_mapping
 from dewing_sim.structure.dynamics import Motion
 from dewing_sim.wing import State
 
-FORMAT = 1
+FORMAT = 2
 SECTIONS = ('flow', 'motion')
 
 
@@ -54,7 +54,7 @@ def _read(path: str | Path) -> tuple[State, Case]:
                   'motion': _section(Motion, 'motion', arrays)}
         for field in dataclasses.fields(State):
             if field.name not in SECTIONS:
-                values[field.name] = arrays[field.name].item()
+                values[field.name] = _value(arrays[field.name])
     except FileNotFoundError:
         raise BadInput(f'{path}: no such file') from None
     except (OSError, ValueError, KeyError, EOFError) as error:
@@ -65,6 +65,9 @@ def _read(path: str | Path) -> tuple[State, Case]:
 def _section(schema: type, name: str, arrays: dict):
     parts = {}
     for field in dataclasses.fields(schema):
-        value = arrays[f'{name}.{field.name}']
-        parts[field.name] = value if value.ndim else value.item()
+        parts[field.name] = _value(arrays[f'{name}.{field.name}'])
     return schema(**parts)
+
+
+def _value(array):
+    return array if array.ndim else array.item()

@@ -13,53 +13,84 @@ from typing import Any
 import numba
 import numpy as np
 
-from dewing_sim.errors import NotConverged
-from dewing_sim.fluid.base import Fluid, Prediction, Wall
+from dewing_sim.errors import NotConverged, RunFailed
+from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.structure import dynamics
 from dewing_sim.structure.band import LowRank
 from dewing_sim.structure.dynamics import Motion, Operator, Structure
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
+EXTRAPOLATION = ((1.0,), (2.0, -1.0), (3.0, -3.0, 1.0))     # from one, two or three past values
+FORESEEN = 1.0e-7   # chords; no need to foresee the shape better
 
 
 @dataclass(frozen=True)
 class Coupled:
-    """One coupled step: flow, motion, coupling passes and the last relative change of shape."""
+    """One coupled step: flow, motion, coupling passes and the last relative change of shape.
+
+    ``still_jumps`` (1 to 3, columns) are the pressure jumps that a wall without acceleration
+    would have felt in the last steps, newest first.
+    """
 
     flow: Any
     motion: Motion
     iterations: int
     residual: float
+    still_jumps: np.ndarray
 
 
 def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, motion: Motion,
-          dt: float, v_squared: float, wall_pressure: float, tolerance: float, passes: int,
-          damping: float = 0.0) -> Coupled:
+          still_jumps: np.ndarray, dt: float, v_squared: float, wall_pressure: float,
+          tolerance: float, passes: int, damping: float = 0.0) -> Coupled:
     """Advance flow and membrane together by ``dt``.
 
     Each pass moves the grid to the last known shape, predicts the flow up to its pressure jump,
     an affine function of the wall velocity, and solves the membrane under that load: the added
     mass is inside the structural solution.  Passes end when the shape changes by less than
-    ``tolerance`` of its largest deflection.  ``wall_pressure`` is a uniform pressure jump added to
-    the load.  Raises `NotConverged` after ``passes``.
+    ``tolerance`` of its largest deflection.  The first shape is that of the membrane under the
+    pressure jump extrapolated from the ``still_jumps`` of the last steps (k, columns), without
+    any by its own motion.  ``wall_pressure`` is a uniform pressure jump added to the load.
+    Raises `NotConverged` after ``passes``.
     """
+    coasting = _coasting(fluid, structure, motion)
+
+    def moved_under(jump, velocity, guess, **accuracy):
+        load = PressureLoad(fluid, structure, jump, velocity, wall_pressure)
+        return dynamics.advance(structure, motion, dt, v_squared, load, operator, damping,
+                                guess=guess, **accuracy)
+
     position = motion.predict(dt)
+    if len(still_jumps):
+        jump = np.dot(EXTRAPOLATION[len(still_jumps) - 1], still_jumps)
+        try:
+            position = moved_under(jump, coasting, position, tolerance=FORESEEN).position
+        except RunFailed:
+            pass                # only a guess: the passes will tell whether the step can be made
     wall = wall_of(fluid.columns, structure.surface(position),
                    structure.surface(motion.rate(position, dt)))
     for iteration in range(1, passes + 1):
         prediction = fluid.predict(flow, wall)
-        load = PressureLoad(fluid, structure, prediction, wall_pressure)
-        moved = dynamics.advance(structure, motion, dt, v_squared, load, operator, damping,
-                                 guess=position)
+        moved = moved_under(prediction.jump, wall.velocity, position)
         position = moved.position
         before, wall = wall, wall_of(fluid.columns, structure.surface(position),
                                      structure.surface(moved.velocity))
         residual = shape_change(wall.height, before.height)
         if residual <= tolerance:
-            return Coupled(fluid.correct(prediction, wall.velocity), moved, iteration, residual)
+            still = prediction.jump + fluid.resistance @ (before.velocity - coasting)
+            return Coupled(fluid.correct(prediction, wall.velocity), moved, iteration, residual,
+                           np.array([still, *still_jumps[:len(EXTRAPOLATION) - 1]]))
     raise NotConverged(f'coupling: the shape still changes by {residual:.3g} of its deflection '
                        f'after {passes} passes (tolerance {tolerance:.3g}); '
                        'reduce the time step or raise coupling_iterations')
+
+
+def _coasting(fluid: Fluid, structure: Structure, motion: Motion) -> np.ndarray:
+    """Return the column velocities (columns,) of a step without acceleration."""
+    now, before = (
+        column_velocity(fluid.columns, structure.surface(position), structure.surface(velocity))
+        for position, velocity in ((motion.position, motion.velocity),
+                                   (motion.position_before, motion.velocity_before)))
+    return (4.0 * now - before) / 3.0
 
 
 def shape_change(after: np.ndarray, before: np.ndarray) -> float:
@@ -75,25 +106,25 @@ def wall_of(columns: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> 
 
 @dataclass(frozen=True)
 class PressureLoad:
-    """Nodal forces of the predicted flow, affine in the nodal velocities."""
+    """Nodal forces of a flow, affine in the nodal velocities.
+
+    ``jump`` (columns,) acts if the wall moves with ``velocity`` (columns,).
+    """
 
     fluid: Fluid
     structure: Structure
-    prediction: Prediction
+    jump: np.ndarray
+    velocity: np.ndarray
     wall_pressure: float
 
     def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return the nodal forces (nodes, 2) of the pressure jump at these velocities."""
-        change = self.wall_velocity(position, velocity) - self.prediction.wall.velocity
-        jump = self.prediction.jump - self.fluid.resistance @ change
         line = self.structure.surface(position)
+        change = column_velocity(self.fluid.columns, line,
+                                 self.structure.surface(velocity)) - self.velocity
+        jump = self.jump - self.fluid.resistance @ change
         return self.structure.spread(
             nodal_force(self.fluid.columns, line, jump + self.wall_pressure))
-
-    def wall_velocity(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the column velocities (columns,)."""
-        return column_velocity(self.fluid.columns, self.structure.surface(position),
-                               self.structure.surface(velocity))
 
 
 def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:

@@ -55,7 +55,8 @@ def march(wing: Wing, progress=None) -> State:
         flow = coupled.flow
         if step * dt < ADAPTATION_TIME:
             flow = adapt_circulation(wing.fluid, flow, dt)
-        state = State(0, v_squared, flow, coupled.motion, coupled.iterations, coupled.residual)
+        state = State(0, v_squared, flow, coupled.motion, coupled.iterations, coupled.residual,
+                      coupled.still_jumps)
         if progress and (step + 1) % PROGRESS_STEPS == 0:
             progress(step + 1, total)
     return state

@@ -8,7 +8,7 @@ changes.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,7 @@ class State:
     motion: Motion
     iterations: int = 0             # coupling passes of the last step
     residual: float = 0.0           # its last relative change of shape
+    still_jumps: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))   # see `Coupled`
 
 
 class Wing:
@@ -79,7 +80,7 @@ class Wing:
         pressure = 0.5 * wall_pressure(self.case.disturbance, time)     # q is rho U^2 / 2
         coupled = self.couple(state, v_squared, pressure, self._operator)
         return State(state.step + 1, v_squared, coupled.flow, coupled.motion,
-                     coupled.iterations, coupled.residual)
+                     coupled.iterations, coupled.residual, coupled.still_jumps)
 
     def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
                damping: float = 0.0) -> interface.Coupled:
@@ -88,7 +89,7 @@ class Wing:
         try:
             return interface.solve(
                 self.fluid, self.membrane, operator, state.flow, state.motion,
-                self.dt / self.scales.time, v_squared, pressure,
+                state.still_jumps, self.dt / self.scales.time, v_squared, pressure,
                 numerics.coupling_tolerance, numerics.coupling_iterations, damping)
         except RunFailed as error:
             message = f'step {state.step + 1} (t = {(state.step + 1) * self.dt:.6g} s): {error}'

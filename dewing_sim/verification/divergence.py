@@ -61,7 +61,7 @@ def static_deflection(wing: Wing, duration: float) -> float:
     for _ in range(round(duration * wing.scales.time / wing.dt)):
         coupled = wing.couple(state, 0.0, 0.0, operator, damping)
         flow = adapt_circulation(wing.fluid, coupled.flow, wing.fluid.dt)
-        state = State(0, 0.0, flow, coupled.motion)
+        state = State(0, 0.0, flow, coupled.motion, still_jumps=coupled.still_jumps)
     return wing.observe(state).camber_max / wing.scales.length
 
 
