@@ -7,6 +7,7 @@ from typing import Any
 
 from dewing_control.options import DISTURBANCES
 from dewing_sim.disturbance import wall_pressure
+from dewing_sim.fluid.onset import Onset
 from dewing_sim.parameters import Case, Disturbance
 from dewing_sim.wing import State, Wing
 
@@ -65,7 +66,7 @@ class TwoToneWing(Wing):
         self.second = second
 
     def couple(self, state: State, v_squared: float, pressure: float, operator: Any,
-               damping: float = 0.0) -> Any:
+               damping: float = 0.0, onset: Onset | None = None) -> Any:
         """Advance flow and membrane by one step; see `Wing.couple`."""
         pressure += 0.5 * wall_pressure(self.second, (state.step + 1) * self.dt)
-        return super().couple(state, v_squared, pressure, operator, damping)
+        return super().couple(state, v_squared, pressure, operator, damping, onset)

@@ -15,6 +15,7 @@ import numpy as np
 
 from dewing_sim.errors import NotConverged, RunFailed
 from dewing_sim.fluid.base import Fluid, Wall
+from dewing_sim.fluid.onset import Onset
 from dewing_sim.structure import dynamics
 from dewing_sim.structure.band import LowRank
 from dewing_sim.structure.dynamics import Motion, Operator, Structure
@@ -41,7 +42,8 @@ class Coupled:
 
 def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, motion: Motion,
           still_jumps: np.ndarray, dt: float, v_squared: float, wall_pressure: float,
-          tolerance: float, passes: int, damping: float = 0.0) -> Coupled:
+          tolerance: float, passes: int, damping: float = 0.0,
+          onset: Onset | None = None) -> Coupled:
     """Advance flow and membrane together by ``dt``.
 
     Each pass moves the grid to the last known shape, predicts the flow up to its pressure jump,
@@ -50,12 +52,13 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     ``tolerance`` of its largest deflection.  The first shape is that of the membrane under the
     pressure jump extrapolated from the ``still_jumps`` of the last steps (k, columns), without
     any by its own motion.  ``wall_pressure`` is a uniform pressure jump added to the load.
-    Raises `NotConverged` after ``passes``.
+    ``onset`` is the flow that the wing meets, by default the undisturbed stream; where its axes
+    are accelerated, so is the membrane.  Raises `NotConverged` after ``passes``.
     """
     coasting = _coasting(fluid, structure, motion)
 
     def moved_under(jump, velocity, guess, **accuracy):
-        load = PressureLoad(fluid, structure, jump, velocity, wall_pressure)
+        load = Load(fluid, structure, jump, velocity, wall_pressure, onset)
         return dynamics.advance(structure, motion, dt, v_squared, load, operator, damping,
                                 guess=guess, **accuracy)
 
@@ -69,7 +72,7 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     wall = wall_of(fluid.columns, structure.surface(position),
                    structure.surface(motion.rate(position, dt)))
     for iteration in range(1, passes + 1):
-        prediction = fluid.predict(flow, wall)
+        prediction = fluid.predict(flow, wall, onset)
         moved = moved_under(prediction.jump, wall.velocity, position)
         position = moved.position
         before, wall = wall, wall_of(fluid.columns, structure.surface(position),
@@ -105,8 +108,8 @@ def wall_of(columns: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> 
 
 
 @dataclass(frozen=True)
-class PressureLoad:
-    """Nodal forces of a flow, affine in the nodal velocities.
+class Load:
+    """Nodal forces of a flow and of accelerated axes, affine in the nodal velocities.
 
     ``jump`` (columns,) acts if the wall moves with ``velocity`` (columns,).
     """
@@ -116,15 +119,20 @@ class PressureLoad:
     jump: np.ndarray
     velocity: np.ndarray
     wall_pressure: float
+    onset: Onset | None = None
 
     def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (nodes, 2) of the pressure jump at these velocities."""
+        """Return the nodal forces (nodes, 2) at these velocities."""
         line = self.structure.surface(position)
         change = column_velocity(self.fluid.columns, line,
                                  self.structure.surface(velocity)) - self.velocity
         jump = self.jump - self.fluid.resistance @ change
-        return self.structure.spread(
+        force = self.structure.spread(
             nodal_force(self.fluid.columns, line, jump + self.wall_pressure))
+        if self.onset is not None and self.onset.is_accelerated:
+            force -= self.structure.mass[:, None] * self.onset.frame_acceleration(
+                position, velocity)
+        return force
 
 
 def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:

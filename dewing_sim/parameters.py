@@ -32,9 +32,9 @@ from dewing_sim.schema import (
 )
 
 __all__ = [
-    'Actuation', 'Case', 'Disturbance', 'Flow', 'Membrane', 'Numerics', 'check', 'choice',
-    'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml', 'leaves', 'load',
-    'parse_assignment', 'real', 'replace', 'text', 'to_mapping', 'to_yaml',
+    'Actuation', 'Case', 'Disturbance', 'Flow', 'Gust', 'Membrane', 'Numerics', 'RigidMotion',
+    'check', 'choice', 'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml',
+    'leaves', 'load', 'parse_assignment', 'real', 'replace', 'text', 'to_mapping', 'to_yaml',
 ]
 
 
@@ -115,6 +115,39 @@ class Disturbance:
     frequency: float = real('Hz', 'frequency f', 0.0, 1.0e4)
 
 
+COURSES = ('none', 'ramp', 'one_minus_cosine', 'sine')
+
+
+@dataclass(frozen=True)
+class Gust:
+    """A gust that is uniform in space and meets the wing as a whole (engine ``conformal``)."""
+
+    shape: str = choice('course in time; none: still air', *COURSES)
+    vertical: float = real('m/s', 'amplitude upwards, across the free stream', -100.0, 100.0)
+    horizontal: float = real('m/s', 'amplitude along the free stream', -100.0, 100.0)
+    start: float = real('s', 'time at which it begins', 0.0, 1.0e4)
+    duration: float = real(
+        's', 'time of the ramp, length of 1 - cos, period of the sine', 1.0e-6, 1.0e4)
+
+
+@dataclass(frozen=True)
+class RigidMotion:
+    """Heave and pitch of the whole wing together (engine ``conformal``)."""
+
+    shape: str = choice('course in time; none: held in place', *COURSES)
+    heave: float = real('m', 'amplitude of the heave, upwards', -10.0, 10.0)
+    pitch_deg: float = real('deg', 'amplitude of the pitch, nose up', -30.0, 30.0)
+    pivot: float = real('-', 'x/c of the point about which it pitches', -1.0, 2.0)
+    start: float = real('s', 'time at which it begins', 0.0, 1.0e4)
+    duration: float = real(
+        's', 'time of the ramp, length of 1 - cos, period of the sine', 1.0e-6, 1.0e4)
+
+    @property
+    def pitch(self) -> float:
+        """Amplitude of the pitch in radians."""
+        return math.radians(self.pitch_deg)
+
+
 @dataclass(frozen=True)
 class Case:
     """A complete description of one wing in one flow."""
@@ -124,6 +157,8 @@ class Case:
     numerics: Numerics
     actuation: Actuation
     disturbance: Disturbance
+    gust: Gust
+    rigid_motion: RigidMotion
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:

@@ -81,7 +81,7 @@ def first_frequency(wing: Wing) -> float:
 def fingerprint(wing: Wing) -> str:
     """Return a hash of all that the rest state depends on: the case and the solver's sources."""
     case = to_mapping(wing.case)
-    del case['disturbance'], case['actuation']['voltage_limit']
+    del case['disturbance'], case['gust'], case['rigid_motion'], case['actuation']['voltage_limit']
     digest = hashlib.sha256(yaml.safe_dump(case).encode())
     digest.update(solver_sources())
     return digest.hexdigest()[:24]

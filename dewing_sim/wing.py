@@ -16,8 +16,10 @@ import numpy as np
 from dewing_sim import interface
 from dewing_sim.amplifier import Amplifier
 from dewing_sim.disturbance import wall_pressure
+from dewing_sim.encounter import Encounter
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
+from dewing_sim.fluid.onset import Onset
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.plate import starting_circulation
@@ -51,10 +53,13 @@ class Wing:
         self.amplifier = Amplifier.of(case.actuation)
         self.fluid = engines.make(case.numerics.engine, case.numerics.grid, self.scales.reynolds,
                                   case.flow.angle_of_attack, self.dt / self.scales.time)
+        self.encounter = Encounter.of(case.flow.angle_of_attack, case.gust, case.rigid_motion,
+                                      self.scales)
         self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
             case.membrane.prestretch)
         self._resistance = interface.nodal_resistance(self.fluid, self.membrane)
         _require_tension(case, math.sqrt(self.v_squared_slack))
+        _require_conformal(case, self.encounter)
         self._operator = self.operator(damping=0.0)
 
     def rest(self, progress=None) -> State:
@@ -78,19 +83,20 @@ class Wing:
         v_squared = self.amplifier.drive(state.v_squared, v_squared, self.dt)
         time = (state.step + 1) * self.dt
         pressure = 0.5 * wall_pressure(self.case.disturbance, time)     # q is rho U^2 / 2
-        coupled = self.couple(state, v_squared, pressure, self._operator)
+        onset = None if self.encounter.is_steady else self.encounter.at(time / self.scales.time)
+        coupled = self.couple(state, v_squared, pressure, self._operator, onset=onset)
         return State(state.step + 1, v_squared, coupled.flow, coupled.motion,
                      coupled.iterations, coupled.residual, coupled.still_jumps)
 
     def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
-               damping: float = 0.0) -> interface.Coupled:
+               damping: float = 0.0, onset: Onset | None = None) -> interface.Coupled:
         """Advance flow and membrane by one step; failures carry ``state`` and its time."""
         numerics = self.case.numerics
         try:
             return interface.solve(
                 self.fluid, self.membrane, operator, state.flow, state.motion,
                 state.still_jumps, self.dt / self.scales.time, v_squared, pressure,
-                numerics.coupling_tolerance, numerics.coupling_iterations, damping)
+                numerics.coupling_tolerance, numerics.coupling_iterations, damping, onset)
         except RunFailed as error:
             message = f'step {state.step + 1} (t = {(state.step + 1) * self.dt:.6g} s): {error}'
             raise type(error)(message, state) from None
@@ -148,3 +154,9 @@ def _require_tension(case: Case, slack_voltage: float) -> None:
         if value >= slack_voltage:
             raise BadInput(f'actuation.{name} = {value:g} V is out of range: the membrane loses '
                            f'its tension at {slack_voltage:.4g} V')
+
+
+def _require_conformal(case: Case, encounter: Encounter) -> None:
+    if not encounter.is_steady and case.numerics.engine != 'conformal':
+        raise BadInput(f'numerics.engine = {case.numerics.engine!r} knows no gust nor '
+                       'rigid_motion: conformal does')

@@ -74,8 +74,8 @@ def test_an_unknown_key_is_refused_with_the_known_ones(name):
 
 
 def test_an_unknown_section_is_refused():
-    with pytest.raises(BadInput, match='^gust is not a parameter'):
-        parameters.from_mapping(Case, {**PAPER, 'gust': {}})
+    with pytest.raises(BadInput, match='^weather is not a parameter'):
+        parameters.from_mapping(Case, {**PAPER, 'weather': {}})
 
 
 @pytest.mark.parametrize('name', LEAVES)

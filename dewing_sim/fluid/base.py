@@ -12,6 +12,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from dewing_sim.fluid.onset import Onset
+
 
 @dataclass(frozen=True)
 class Wall:
@@ -66,8 +68,12 @@ class Fluid(Protocol):
     def with_circulation(self, state: Any, circulation: float) -> Any:
         """Return ``state`` with the far-field values of another total circulation (U c)."""
 
-    def predict(self, state: Any, wall: Wall) -> Prediction:
-        """Advance one step with the wall at its new place, short of its final velocity."""
+    def predict(self, state: Any, wall: Wall, onset: Onset | None = None) -> Prediction:
+        """Advance one step with the wall at its new place, short of its final velocity.
+
+        ``onset`` is the stream at the new time, by default the undisturbed one; an engine that
+        knows no other raises `BadInput`.
+        """
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> Any:
         """Complete the step with the wall velocity (n,) that the coupling found."""

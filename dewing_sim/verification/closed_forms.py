@@ -24,17 +24,36 @@ def wagner(s: np.ndarray) -> np.ndarray:
     return 1.0 - 0.165 * np.exp(-0.0455 * s) - 0.335 * np.exp(-0.3 * s)
 
 
+def theodorsen(k: float) -> complex:
+    """Return C(k) at the reduced frequency k = omega c / 2 U (Theodorsen 1935)."""
+    from scipy.special import hankel2
+    first, zeroth = hankel2(1, k), hankel2(0, k)
+    return complex(first / (first + 1j * zeroth))
+
+
+def oscillating_plate(omega: float, heave: complex = 0.0, pitch: complex = 0.0,
+                      pivot: float = 0.0, gust: complex = 0.0) -> complex:
+    """Return Cl of a plate in ideal flow, all multiplied by exp(i omega t) (Theodorsen 1935).
+
+    ``heave`` is up, ``pitch`` nose up about x/c = ``pivot``, ``gust`` a vertical velocity that is
+    uniform in space: w being the upwash at mid-chord and q = d pitch / dt,
+    pi/2 dw/dt + 2 pi C(k) (w + q / 4), w = pitch + gust - d heave / dt + (1/2 - pivot) q.
+    """
+    rate = 1j * omega
+    turning = rate * pitch
+    upwash = pitch + gust - rate * heave + (0.5 - pivot) * turning
+    added = 0.5 * np.pi * rate * upwash
+    return added + 2.0 * np.pi * theodorsen(0.5 * omega) * (upwash + 0.25 * turning)
+
+
 def oscillating_camber(amplitude: float, omega: float) -> complex:
     """Return Cl of the camber ``amplitude`` exp(i omega t) of a parabola in ideal flow.
 
     Added mass and Theodorsen's circulatory part (k = omega / 2):
     (3 pi / 8) omega^2 a + 2 pi a (2 - i omega / 2) C(k).
     """
-    from scipy.special import hankel2
-    first, zeroth = hankel2(1, 0.5 * omega), hankel2(0, 0.5 * omega)
-    theodorsen = first / (first + 1j * zeroth)
-    return complex(amplitude * (0.375 * np.pi * omega**2
-                                + 2.0 * np.pi * (2.0 - 0.5j * omega) * theodorsen))
+    return complex(amplitude * (0.375 * np.pi * omega**2 + 2.0 * np.pi * (2.0 - 0.5j * omega)
+                                * theodorsen(0.5 * omega)))
 
 
 def _theta() -> np.ndarray:

@@ -20,13 +20,14 @@ from dewing_sim.verification import (
     resolution,
     rigid_plate,
     still_air,
+    unsteady,
     vortex,
 )
 from dewing_sim.verification.study import Check, Run, Study
 
 STUDIES = tuple(module.STUDY for module in (
-    rigid_plate, resolution, vortex, impulsive, added_mass, moving_camber, camber, still_air,
-    divergence, coupled))
+    rigid_plate, resolution, vortex, impulsive, added_mass, unsteady, moving_camber, camber,
+    still_air, divergence, coupled))
 SINGLE_THREAD = ('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS',
                  'NUMBA_NUM_THREADS')
 

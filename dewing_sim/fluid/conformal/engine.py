@@ -17,11 +17,13 @@ from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.fluid.base import Loads, Prediction, Wall
 from dewing_sim.fluid.conformal import adi, transport
 from dewing_sim.fluid.conformal.edges import EdgeTable
+from dewing_sim.fluid.conformal.frame import Frame
 from dewing_sim.fluid.conformal.geometry import Geometry, Surroundings
 from dewing_sim.fluid.conformal.grid import PRESETS, Grid
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.pressure import WallPressure, force, lamb_vector
+from dewing_sim.fluid.onset import Onset
 
 LARGEST_SLIP = 1.5      # shed in one step: 0.8 at an impulsive start, 0.15 later in a sound run
 NEGLIGIBLE_SLIP = 1.0e-6
@@ -48,6 +50,7 @@ class FlowState:
     velocity: np.ndarray            # wall velocities of the columns
     velocity_before: np.ndarray
     circulation: float              # of the wing and the wake within the grid, in U c
+    incidence: float                # of the chord to the undisturbed stream, rad
 
     @property
     def map(self) -> Map:
@@ -76,8 +79,7 @@ class Conformal:
         self.wall_pressure = WallPressure.of(grid, self.nu)
         self.resistance = self._flat_resistance()
         self._sinh_face = np.sinh(grid.face)
-        self._sin_corner = np.sin(grid.xi + 0.5 * grid.step - alpha)
-        self._sin_node = np.sin(grid.xi - alpha)
+        self._steady = Frame.of(Onset.steady(alpha), grid, self.geometry.mapping)
 
     @classmethod
     def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'Conformal':
@@ -94,24 +96,27 @@ class Conformal:
         zero = np.zeros((len(self.grid.eta), len(self.grid.xi)))
         psi = zero + (circulation / (2.0 * np.pi) * self.grid.face)[:, None]
         return FlowState(zero, zero, psi, zero, zero, psi, m.shape, m.edges, m.shape, m.edges,
-                         zero[0], wall.height, wall.velocity, wall.velocity, circulation)
+                         zero[0], wall.height, wall.velocity, wall.velocity, circulation,
+                         self.alpha)
 
     def with_circulation(self, state: FlowState, circulation: float) -> FlowState:
         """Return ``state`` with another circulation, by a starting vortex at infinity."""
         return replace(state, circulation=circulation)
 
-    def predict(self, state: FlowState, wall: Wall) -> Prediction:
+    def predict(self, state: FlowState, wall: Wall, onset: Onset | None = None) -> Prediction:
         """Advance vorticity and stream function with the wall at its new place and velocity."""
         _require_pinned(wall)
+        frame = self._frame(onset)
         around = self.geometry.follow(wall, state.height, state.map, state.map_before)
-        w, outflow = self._transport(state, around)
+        w, outflow = self._transport(state, around, frame)
         circulation = state.circulation + self.dt * outflow
-        u_wall, v_wall = around.wall_fluxes(wall.velocity)
-        w, q, psi = self._close(w, around, u_wall, v_wall, circulation)
-        pressure = self._pressure(state, wall, around, w, psi, u_wall, v_wall)
+        wall_fluxes = frame.wall_fluxes(around, wall.velocity)
+        w, q, psi = self._close(w, around, frame, wall_fluxes, circulation)
+        pressure = self._pressure(state, wall, around, frame, w, psi, wall_fluxes)
         after = FlowState(w, q, psi, state.w, state.q, state.psi,
                           around.map.shape, around.map.edges, state.shape, state.edges,
-                          pressure, wall.height, wall.velocity, state.velocity, circulation)
+                          pressure, wall.height, wall.velocity, state.velocity, circulation,
+                          frame.onset.incidence)
         return Prediction(wall, around.jump(pressure), (after, around))
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
@@ -129,18 +134,24 @@ class Conformal:
         grid, m = self.grid, state.map
         place, slope = self.geometry.mapping.wall(m)
         traction = force(state.pressure, state.w[0], slope, self.nu)
-        total = np.sum(traction) * grid.step * np.exp(-1j * self.alpha)
+        total = np.sum(traction) * grid.step * np.exp(-1j * state.incidence)
         moment = np.sum(np.conj(place - 0.25) * traction).imag * grid.step
         return Loads(self.geometry.jump(m, state.pressure), cl=2.0 * float(total.imag),
                      cd=2.0 * float(total.real), cm=-2.0 * float(moment))
 
-    def _transport(self, s: FlowState, around: Surroundings) -> tuple[np.ndarray, float]:
+    def _frame(self, onset: Onset | None) -> Frame:
+        return Frame.of(onset, self.grid, self.geometry.mapping) if onset else self._steady
+
+    def _transport(self, s: FlowState, around: Surroundings, frame: Frame,
+                   ) -> tuple[np.ndarray, float]:
         """Return the vorticity before no slip and the outflow of vorticity from the grid."""
         grid = self.grid
         inertia = 1.5 / self.dt * around.h2
         w = transport.extrapolate(s.w, s.w_before, self.edges.near(around.map).share)
         psi = 2.0 * s.psi - s.psi_before
-        v, u = self._fluxes(psi, around.map.scale)
+        if frame.turn:
+            psi -= frame.grid_stream(around.map)
+        v, u = self._fluxes(psi, around, frame)
         if around.grid_flux is not None:
             transport.subtract_grid_flux(around.grid_flux, v, u)
         r = transport.inertia(inertia, w, s.q, s.q_before, self.dt)
@@ -152,12 +163,13 @@ class Conformal:
         w += r
         return w, outflow
 
-    def _close(self, w, around: Surroundings, u_wall, v_wall, circulation: float):
+    def _close(self, w, around: Surroundings, frame: Frame, wall_fluxes, circulation: float):
         """Shed what no slip demands into ``w``; return vorticity, h^2 w and psi' at corners."""
         q = around.h2 * w
         q_hat = fft.rfft(q, axis=1)
+        u_wall, v_wall = wall_fluxes
         psi_wall = self.poisson.wall_value(v_wall)
-        required = -fft.rfft(u_wall + 2.0 * around.map.scale * self._sin_node)
+        required = -fft.rfft(u_wall + 2.0 * around.map.scale * frame.node)
         influence = self.edges.near(around.map).influence
         for _ in range(SHEDDING_PASSES):
             slip = fft.irfft(self.poisson.wall_slope(q_hat, psi_wall, circulation) - required)
@@ -169,18 +181,21 @@ class Conformal:
         psi_hat = self.poisson.solve(q_hat, psi_wall, circulation)
         return w, q, fft.irfft(self.poisson.corners(psi_hat, required, circulation), axis=1)
 
-    def _pressure(self, s: FlowState, wall: Wall, around: Surroundings, w, psi, u_wall, v_wall,
-                  ) -> np.ndarray:
-        """Return the wall pressure (n,)."""
-        v, u = self._fluxes(psi, around.map.scale)
+    def _pressure(self, s: FlowState, wall: Wall, around: Surroundings, frame: Frame, w, psi,
+                  wall_fluxes) -> np.ndarray:
+        """Return the wall pressure (n,), less that which accelerates the stream or the frame."""
+        v, u = self._fluxes(psi, around, frame)
+        u_wall, v_wall = wall_fluxes
         acceleration = (3.0 * wall.velocity - 4.0 * s.velocity + s.velocity_before
                         ) / (2.0 * self.dt)
-        flux = around.wall_fluxes(acceleration)[1]
+        flux = (around.wall_fluxes(acceleration)[1]
+                + frame.acceleration(around, wall.velocity))
         head = self.wall_pressure(w, lamb_vector(w, v, u, v_wall, u_wall), flux)
-        return head - 0.5 * around.on_nodes(wall.velocity)**2
+        return head - 0.5 * frame.wall_speed(around, wall.velocity)**2
 
-    def _fluxes(self, psi: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarray]:
-        return transport.fluxes(psi, 2.0 * scale * self._sinh_face, self._sin_corner,
+    def _fluxes(self, psi: np.ndarray, around: Surroundings, frame: Frame,
+                ) -> tuple[np.ndarray, np.ndarray]:
+        return transport.fluxes(psi, 2.0 * around.map.scale * self._sinh_face, frame.corner,
                                 self.grid.step, self.grid.width)
 
     def _flat_resistance(self) -> np.ndarray:

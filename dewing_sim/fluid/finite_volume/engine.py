@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dewing_sim.errors import Diverged
+from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.fluid.base import Loads, Prediction, Wall
 from dewing_sim.fluid.finite_volume import adi, mapping, momentum, projection, transport
 from dewing_sim.fluid.finite_volume.grid import PRESETS, Grid, build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.potential import Potential
+from dewing_sim.fluid.onset import Onset
 
 UPWIND_SHARE = 0.5                  # in the far field only
 UPWIND_START, UPWIND_FULL = 1.0, 4.0    # chords from the plate
@@ -105,8 +106,14 @@ class FiniteVolume:
             field[1:, [0, -1]] = far_y[1:, [0, -1]]
         return replace(state, u=u, v=v, fx=fx, w=w, circulation=circulation)
 
-    def predict(self, state: FlowState, wall: Wall) -> Prediction:
-        """Advance momentum and the forward half of the projection with the wall in place."""
+    def predict(self, state: FlowState, wall: Wall, onset: Onset | None = None) -> Prediction:
+        """Advance momentum and the forward half of the projection with the wall in place.
+
+        Raises `BadInput` for any ``onset``: the far field is that of a steady stream.
+        """
+        if onset is not None:
+            raise BadInput('the finite-volume engine knows no gusts, heave or pitch: '
+                           'numerics.engine: conformal does')
         metrics = mapping.metrics(self.grid, wall)
         u, v = self.momentum(state, metrics, wall)
         fx, fy = projection.fluxes(self.grid, self._g, metrics, u, v)
