@@ -4,11 +4,12 @@
 
 VENV ?= .venv
 BIN = $(VENV)/bin
+SPHINX = $(VENV)-docs/bin/python -m sphinx --keep-going
 PYTEST_OPTIONS ?=
 DEMO_OPTIONS ?= --force
 BENCH_OPTIONS ?=
 
-.PHONY: help venv demo test lint bench bench-peers clean
+.PHONY: help venv demo test lint bench bench-peers docs docs-venv links long clean
 
 help:
 	@echo 'make demo   the closed loop over ROS 2: simulator and controller as two processes'
@@ -16,6 +17,9 @@ help:
 	@echo 'make lint   linters'
 	@echo 'make bench  time per step'
 	@echo 'make bench-peers  time of a plate beside NGSolve and OpenFOAM, where these are installed'
+	@echo 'make docs   the browsable documentation, in build/docs; warnings are errors'
+	@echo 'make links  the external links of the documentation, over the network'
+	@echo 'make long   every command of the documentation that takes long, an hour or more'
 	@echo 'make venv   set up $(VENV) only'
 	@echo 'make clean  remove what was built, but not results in out/'
 
@@ -40,5 +44,19 @@ bench-peers: venv
 	@OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
 		$(BIN)/python benchmarks/peers/compare.py --json out/peers.json --force
 
+docs: docs-venv
+	@$(SPHINX) -W -q -b html docs build/docs
+	@echo 'build/docs/index.html'
+
+links: docs-venv
+	@$(SPHINX) -b linkcheck docs build/links
+
+docs-venv:
+	@python="$$(sh scripts/find_python)" && \
+		"$$python" scripts/environment.py '$(VENV)-docs' docs/requirements.txt
+
+long: venv
+	@$(BIN)/python scripts/documented_commands.py
+
 clean:
-	rm -rf '$(VENV)' build dist install log *.egg-info .pytest_cache .ruff_cache .hypothesis
+	rm -rf '$(VENV)' '$(VENV)-docs' docs/autoapi build dist install log *.egg-info .pytest_cache .ruff_cache .hypothesis

@@ -56,7 +56,8 @@ setup(
         'mpc': ['osqp>=1.0'],
         'peers': ['ngsolve>=6.2'],
         'sweep': ['distributed>=2024.1', 'xarray>=2024.1'],
-        'docs': ['furo>=2024.8', 'myst-parser>=4.0', 'sphinx>=8.0', 'sphinx-autoapi>=3.4'],
+        'docs': [line for line in (SOURCE / 'docs' / 'requirements.txt').read_text().splitlines()
+                 if not line.startswith('#')],
         'test': [
             'control>=0.10',
             'distributed>=2024.1',

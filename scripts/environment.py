@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Make the virtual environment of ``make venv``; do nothing when it is current.
 
-Usage: ``python3 environment.py FOLDER``. Standard library only. ROS comes from a sourced system
-ROS if there is one, else from wheels where they exist; everything offline works without it.
+Usage: ``python3 environment.py FOLDER [REQUIREMENTS]``. Standard library only. ROS comes from a
+sourced system ROS if there is one, else from wheels where they exist; everything offline works
+without it. With a file of requirements the environment holds these only, as for ``make docs``.
 """
 
 import hashlib
@@ -25,6 +26,7 @@ REASONS = {
     'wheels': 'ROS: no usable system ROS is sourced, so the ros-jazzy wheels are installed.',
     'none': 'ROS: wheels exist only for x86_64 Linux with Python 3.10 to 3.13, so the nodes and '
             'the demo need a sourced system ROS or a container; every offline command works.',
+    'tools': 'ROS: left out, not needed here.',
 }
 
 
@@ -37,11 +39,12 @@ def ros_source() -> str:
     return 'wheels' if has_wheels else 'none'
 
 
-def recipe(folder: Path, source: str) -> str:
+def recipe(folder: Path, source: str, requirements: Path | None) -> str:
     """Return what the environment depends on, as the text of its stamp."""
     digest = hashlib.sha256()
-    for name in INGREDIENTS:
-        digest.update((PROJECT / name).read_bytes())
+    ingredients = [requirements] if requirements else [PROJECT / name for name in INGREDIENTS]
+    for path in ingredients:
+        digest.update(path.read_bytes())
     version = '.'.join(map(str, sys.version_info[:2]))
     return f'{digest.hexdigest()}\nPython {version}\nROS {source}\n{folder}\n{PROJECT}\n'
 
@@ -66,11 +69,16 @@ def create(folder: Path, source: str) -> None:
     subprocess.run([sys.executable, '-m', 'venv', *option, str(folder)], check=True)
 
 
-def install(folder: Path, source: str) -> None:
-    """Install the project, editable, with its test tools and, if ``source`` is wheels, ROS."""
+def install(folder: Path, source: str, requirements: Path | None) -> None:
+    """Install the project, editable, with its test tools and, if ``source`` is wheels, ROS.
+
+    With ``requirements`` install what they name instead.
+    """
     extras = 'ros,test,lint' if source == 'wheels' else 'test,lint'
+    packages = (['--requirement', str(requirements)] if requirements
+                else ['--editable', f'{PROJECT}[{extras}]'])
     command = [str(folder / 'bin' / 'python'), '-m', 'pip', 'install', '--progress-bar', 'off',
-               '--disable-pip-version-check', '--editable', f'{PROJECT}[{extras}]']
+               '--disable-pip-version-check', *packages]
     old_numpy = 'import numpy; assert numpy.__version__ < "2"'
     if source == 'system' and _runs(sys.executable, old_numpy):
         command.append('numpy<2')       # the messages of this ROS are compiled against NumPy 1
@@ -133,23 +141,26 @@ def _runs(python: str, code: str) -> bool:
 def main() -> None:
     """Bring the environment named on the command line up to date."""
     folder = Path(sys.argv[1]).resolve()
-    source = ros_source()
+    requirements = Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else None
+    source = 'tools' if requirements else ros_source()
     stamp = folder / 'dewing.stamp'
-    wanted = recipe(folder, source)
+    wanted = recipe(folder, source, requirements)
     if stamp.is_file() and stamp.read_text() == wanted:
         return
     started = time.monotonic()
     print(f'Python: {sys.executable} ({platform.python_version()}).')
     print(REASONS[source])
-    if source != 'system' and os.environ.get('AMENT_PREFIX_PATH'):
+    if source in ('wheels', 'none') and os.environ.get('AMENT_PREFIX_PATH'):
         print('AMENT_PREFIX_PATH is set, but this Python cannot import the rclpy of that ROS: '
               'work in a shell without it, since two ROS in one process do not agree.')
     sys.stdout.flush()
     create(folder, source)
     stamp.unlink(missing_ok=True)
-    install(folder, source)
-    add_to_ament_index(folder)
-    if source != 'none' and not _runs(str(folder / 'bin' / 'python'), 'import rclpy'):
+    install(folder, source, requirements)
+    if not requirements:
+        add_to_ament_index(folder)
+    if source in ('system', 'wheels') and not _runs(str(folder / 'bin' / 'python'),
+                                                    'import rclpy'):
         sys.exit('ROS is installed but rclpy cannot be imported: '
                  f'try {folder}/bin/python -c "import rclpy".')
     stamp.write_text(wanted)
