@@ -23,6 +23,7 @@ class Trial:
     camber: np.ndarray              # a/a_ref, a_ref at rest
     v_squared: np.ndarray           # V^2
     cl: np.ndarray
+    cd: np.ndarray
     capacitance: np.ndarray         # F/m
     seconds: np.ndarray             # the controller took for each step
     failure: str = ''               # why the run stopped early, if it did
@@ -58,7 +59,7 @@ def run(plant: Plant, rest: Any, controller: Controller | None, steps: int, memb
             break
         outputs = plant.observe(state)
         rows.append((outputs.camber_mean / passive, outputs.v_squared, outputs.cl,
-                     capacitance(outputs.x, outputs.y, membrane), seconds))
+                     outputs.cd, capacitance(outputs.x, outputs.y, membrane), seconds))
     if not rows:
         raise RunFailed(f'the first step failed: {failure}', rest)
     return Trial(plant.dt, *np.array(rows).T, failure)
@@ -97,6 +98,7 @@ def figures(trial: Trial, target: float, limit: float, skip: float) -> dict[str,
         'energy_j': whole.net, 'energy_without_recovery_j': whole.gross,
         'power_w': settled.net / duration, 'power_without_recovery_w': settled.gross / duration,
         'work_w': settled.work / duration, 'cl_mean': float(trial.cl[late].mean()),
+        'cl_rms': float(trial.cl[late].std()), 'cd_mean': float(trial.cd[late].mean()),
         'compute_ms': 1.0e3 * float(np.median(trial.seconds)),
         'compute_worst_ms': 1.0e3 * float(trial.seconds.max()),
         'failure': trial.failure}

@@ -1,0 +1,86 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers drawn from flights: averages with error bars, mean shapes, lines, modes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dewing_control.paper.result import Result
+from dewing_sim import spectrum
+from dewing_sim.verification.signals import Mean, block_mean
+
+BLOCKS = 8
+STATIONS = np.linspace(0.0, 1.0, 101)       # x/c at which shapes are compared
+
+
+def average(flight: Result, name: str, scale: float = 1.0) -> Mean:
+    """Return the average of a series over ``scale``, with its error."""
+    return block_mean(flight[name] / scale)
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Largest y* of a mean shape and its x/c, with standard errors."""
+
+    height: Mean
+    place: Mean
+
+
+def shapes(flight: Result) -> np.ndarray:
+    """Return y* (frames, stations): deflections over y_ref at `STATIONS`."""
+    chord, y_ref = flight.values['chord'], flight.values['y_ref']
+    return np.array([np.interp(STATIONS, x / chord, y / y_ref)
+                     for x, y in zip(flight['x'], flight['y'])])
+
+
+def peak(flight: Result) -> Peak:
+    """Return where the mean shape is highest; errors from the mean shapes of blocks."""
+    drawn = shapes(flight)
+    whole = _peak(drawn.mean(axis=0))
+    if len(drawn) < 2 * BLOCKS:
+        return Peak(Mean(whole[0], 0.0), Mean(whole[1], 0.0))
+    parts = np.array([_peak(part.mean(axis=0)) for part in np.array_split(drawn, BLOCKS)])
+    errors = parts.std(axis=0, ddof=1) / np.sqrt(BLOCKS)
+    return Peak(Mean(whole[0], float(errors[0])), Mean(whole[1], float(errors[1])))
+
+
+def _peak(shape: np.ndarray) -> tuple[float, float]:
+    k = int(np.clip(np.argmax(shape), 1, len(shape) - 2))
+    curvature, slope, height = np.polyfit(STATIONS[k - 1:k + 2] - STATIONS[k],
+                                          shape[k - 1:k + 2], 2)
+    offset = -0.5 * slope / curvature
+    return float(height + 0.5 * slope * offset), float(STATIONS[k] + offset)
+
+
+def lines(flight: Result, name: str = 'cl', most: int = 6) -> list[float]:
+    """Return the lines of a series in Hz, strongest first."""
+    return spectrum.peaks(flight[name], flight.values['sample'], most)
+
+
+def shedding(flight: Result) -> float:
+    """Return the strongest line of Cl in Hz, zero if the lift is steady."""
+    return next(iter(lines(flight, most=1)), 0.0)
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Proper orthogonal decomposition of the fluctuating shape.
+
+    ``shape`` (modes, stations) are orthonormal over the chord, ``energy`` (modes,) shares of the
+    variance, ``amplitude`` (frames, modes) in y*.
+    """
+
+    shape: np.ndarray
+    energy: np.ndarray
+    amplitude: np.ndarray
+
+
+def modes(drawn: np.ndarray) -> Modes:
+    """Return the modes of shapes (frames, stations), by weighted singular values."""
+    weight = np.sqrt(np.gradient(STATIONS))
+    left, size, right = np.linalg.svd((drawn - drawn.mean(axis=0)) * weight, full_matrices=False)
+    shape = right / weight
+    sign = np.where(shape[np.arange(len(shape)), np.abs(shape).argmax(axis=1)] < 0.0, -1.0, 1.0)
+    return Modes(shape * sign[:, None], size**2 / max(np.sum(size**2), 1.0e-300),
+                 left * size * sign)
