@@ -38,7 +38,7 @@ setup(
         ('lib/dewing', [f'scripts/{name}' for name in EXECUTABLES]),
     ],
     install_requires=[
-        'matplotlib>=3.6',
+        'matplotlib>=3.7',
         'mcap>=1.6',
         'numba>=0.59',
         'numpy>=1.23',

@@ -21,19 +21,20 @@ LOOK = {
 def axes(rows: int = 1, columns: int = 1, height: float = 2.6, **settings: Any,
          ) -> tuple[Any, Any]:
     """Return a figure and its axes (rows, columns); ``height`` in inches a row."""
-    import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    with matplotlib.rc_context(LOOK):
-        figure = Figure(figsize=(WIDTH, height * rows), layout='constrained')
-        FigureCanvasAgg(figure)
-        return figure, figure.subplots(rows, columns, squeeze=False, **settings)
+    figure = Figure(figsize=(WIDTH, height * rows), layout='constrained')
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(rows, columns, squeeze=False, **settings)
+
+
+def legend(figure: Any, axis: Any, columns: int = 4) -> None:
+    """Name the lines of ``axis`` above the figure, where they hide nothing."""
+    figure.legend(*axis.get_legend_handles_labels(), loc='outside upper left', ncols=columns)
 
 
 def png(figure: Any) -> bytes:
     """Return the figure as PNG."""
-    import matplotlib
     buffer = io.BytesIO()
-    with matplotlib.rc_context(LOOK):
-        figure.savefig(buffer, format='png', dpi=DPI)
+    figure.savefig(buffer, format='png', dpi=DPI)
     return buffer.getvalue()

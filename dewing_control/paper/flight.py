@@ -9,9 +9,10 @@ from typing import Mapping
 
 import numpy as np
 
+from dewing_control.paper.quantities import shedding
 from dewing_control.paper.result import Result, Tick
 from dewing_control.paper.watched import TICK_STEPS
-from dewing_sim import parameters, spectrum
+from dewing_sim import parameters
 from dewing_sim.errors import RunFailed
 from dewing_sim.history import Recorder
 from dewing_sim.parameters import Case
@@ -54,7 +55,7 @@ class Flight:
     """A wing from its rest state, sampled every ``sample`` s, its shape every ``frame`` s.
 
     V^2 = voltage^2 (1 + swing cos 2 pi f t), at rest that of the case; ``duration`` in c/U. f is
-    in Hz, or in units of the strongest line of Cl of the flight ``lock``.
+    in Hz, or in units of the shedding frequency of the flight ``lock``.
     """
 
     case: str                       # YAML
@@ -87,10 +88,10 @@ class Flight:
         if not self.lock:
             return self.frequency
         flown = inputs[self.lock]
-        lines = spectrum.peaks(flown['cl'], flown.values['sample'], most=1)
-        if not lines:
-            raise RunFailed(f'the lift of {self.lock} is steady: no frequency to lock to')
-        return self.frequency * lines[0]
+        line = shedding(flown)
+        if not line:
+            raise RunFailed(f'the lift of {self.lock} has no line: no frequency to lock to')
+        return self.frequency * line
 
     def __call__(self, tick: Tick, inputs: Mapping[str, Result]) -> Result:
         """Fly; return scalars (samples,), shapes (frames, nodes) and the scales."""

@@ -70,7 +70,7 @@ def _table_of_rows(sections: list[Section]) -> str:
 def _row(row: Row) -> str:
     unit = f' {row.unit}' if row.unit else ''
     cells = [f'<td>{_text(row.quantity)}</td>',
-             f'<td class="n">{_number(row.paper, unit)}</td>',
+             f'<td class="n">{"&lt; " if row.bound else ""}{_number(row.paper, unit)}</td>',
              f'<td class="n"><b>{_number(row.ours, unit)}</b></td>',
              f'<td class="n">{_number(row.error, unit, 2)}</td>',
              f'<td class="n">{_number(row.spread, unit, 2)}</td>', _difference(row),

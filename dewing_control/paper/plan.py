@@ -63,7 +63,7 @@ FULL = Extent(
         (8.0, 'conformal', 'standard', 5.0e-5), (8.0, 'conformal', 'reference', 5.0e-5)),
     ('fig5', 'target_1', 'target_097'), CHORDS, STEADY_SHARES, True)
 QUICK = Extent(
-    {'finite_volume': 'fast', 'conformal': 'realtime'}, 15.0, 5.0, 24.0, 16.0, 0.3, 0.1, 0.8,
+    {'finite_volume': 'fast', 'conformal': 'realtime'}, 12.0, 3.0, 24.0, 15.0, 0.3, 0.1, 0.8,
     16, (
         (4.0, 'finite_volume', 'fast', 1.0e-4), (4.0, 'conformal', 'realtime', 1.0e-4),
         (4.0, 'conformal', 'standard', 1.0e-4),

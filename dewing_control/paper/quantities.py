@@ -11,6 +11,7 @@ from dewing_sim import spectrum
 from dewing_sim.verification.signals import Mean, block_mean
 
 BLOCKS = 8
+SHEDDING = (0.45, 0.85)     # Strouhal numbers f c/U between which a wing like this one sheds
 STATIONS = np.linspace(0.0, 1.0, 101)       # x/c at which shapes are compared
 
 
@@ -59,8 +60,12 @@ def lines(flight: Result, name: str = 'cl', most: int = 6) -> list[float]:
 
 
 def shedding(flight: Result) -> float:
-    """Return the strongest line of Cl in Hz, zero if the lift is steady."""
-    return next(iter(lines(flight, most=1)), 0.0)
+    """Return the strongest line of Cl between the Strouhal numbers of `SHEDDING`, in Hz.
+
+    Stronger lines may be harmonics that a mode of the membrane amplifies. Zero without a line.
+    """
+    low, high = (number / flight.values['convective_time'] for number in SHEDDING)
+    return next((line for line in lines(flight, most=12) if low < line < high), 0.0)
 
 
 @dataclass(frozen=True)

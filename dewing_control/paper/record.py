@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report's numbers as JSON and its series as CSV."""
 
+import csv
 import io
 import re
 from pathlib import Path
@@ -41,7 +42,7 @@ def write_series(folder: Path, sections: list[Section], overwrite: bool) -> None
         for name, columns in section.series.items():
             path = folder / f'{file_name(name)}.csv'
             with new_file(path, overwrite) as file:
-                file.write(csv(path, columns).encode())
+                file.write(table(path, columns).encode())
 
 
 def file_name(name: str) -> str:
@@ -49,14 +50,15 @@ def file_name(name: str) -> str:
     return re.sub(r'[^\w.-]+', '_', name).strip('_')
 
 
-def csv(path: Path, columns: Mapping[str, np.ndarray]) -> str:
-    """Return a header and rows; every column has the same length."""
+def table(path: Path, columns: Mapping[str, np.ndarray]) -> str:
+    """Return CSV with a header; raise `RunFailed` for a column that is not finite."""
     text = io.StringIO()
-    print(','.join(columns), file=text)
+    writer = csv.writer(text, lineterminator='\n')
+    writer.writerow(columns)
     for name, column in columns.items():
         if column.dtype.kind == 'f' and not np.isfinite(column).all():
             raise RunFailed(f'{path}: {name} is not finite')
     for row in zip(*columns.values(), strict=True):
-        print(','.join(item if isinstance(item, str) else format(item, DIGITS) for item in row),
-              file=text)
+        writer.writerow([item if isinstance(item, str) else format(item, DIGITS)
+                         for item in row])
     return text.getvalue()

@@ -27,17 +27,18 @@ class Row:
     error: float | None = None
     spread: float | None = None
     explanation: str = ''
+    bound: bool = False             # whether the paper's value is an upper bound
 
     @property
     def difference(self) -> float | None:
-        """(ours - paper) / |paper|."""
-        if self.paper in (None, 0.0):
+        """(ours - paper) / |paper|, None for a bound."""
+        if self.bound or self.paper in (None, 0.0):
             return None
         return (self.ours - self.paper) / abs(self.paper)
 
     def to_mapping(self) -> dict[str, Any]:
         """Return the record for JSON."""
-        return {**{name: value if value is None or isinstance(value, str) else float(value)
+        return {**{name: value if value is None or isinstance(value, (str, bool)) else float(value)
                    for name, value in vars(self).items()},
                 'difference': None if self.difference is None else float(self.difference)}
 

@@ -4,6 +4,7 @@
 
 from types import ModuleType
 
+from dewing_control.paper.drawing import LOOK
 from dewing_control.paper.plan import Plan
 from dewing_control.paper.section import Found, Missing, Section
 from dewing_control.paper.sections import (
@@ -30,7 +31,9 @@ BEYOND = (readings, scans, long_run, energy_balance, contest, alpha8, picture)
 
 def make(plan: Plan, found: Found) -> list[Section]:
     """Return every section; one that lacks a run says so in its place."""
-    return [_make(module, plan, found) for module in PAPER + BEYOND]
+    import matplotlib
+    with matplotlib.rc_context(LOOK):
+        return [_make(module, plan, found) for module in PAPER + BEYOND]
 
 
 def _make(module: ModuleType, plan: Plan, found: Found) -> Section:

@@ -40,7 +40,7 @@ def section(plan: Plan, found: Found) -> Section:
         axis.set(ylabel='|error| [%]', title=f'{MEANINGS[scenario]}', ylim=(1.0e-5, 30.0))
         made.series[f'controllers_{scenario}'] = columns
     axes[-1, 0].set_xlabel('t [ms]')
-    axes[0, 0].legend(ncols=4, loc='upper right')
+    drawing.legend(figure, axes[0, 0])
     made.figures.append(Figure('contest', 'Distance of the mean camber from its target, in % of '
                                'the passive camber.', drawing.png(figure)))
     made.tables.append(Table('The last periods', (

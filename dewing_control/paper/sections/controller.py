@@ -56,7 +56,7 @@ def _row(label: str, report: dict) -> tuple[str, ...]:
 
 def _figure(found: Found) -> Figure:
     result = found['design']
-    figure, axes = drawing.axes(1, 2, 2.9)
+    figure, axes = drawing.axes(1, 2, 3.1)
     gain, sensitivity = axes[0]
     for label, name, style, colour in (('at rest', 'rest', '-', drawing.BLUE),
                                        ('0.82 of the tension', 'strained', '--',
@@ -69,6 +69,6 @@ def _figure(found: Found) -> Figure:
     gain.axhline(1.0, color='0.4', lw=0.8)
     gain.set(xlabel='f [Hz]', ylabel='|L|')
     sensitivity.set(xlabel='f [Hz]', ylabel='|S|')
-    gain.legend()
+    drawing.legend(figure, gain)
     return Figure('controller', 'Loop gain and sensitivity of the shipped PID on the identified '
                   'model; dotted: Ms = 2.', drawing.png(figure))

@@ -75,7 +75,7 @@ def _figure(plan: Plan, found: Found, made: Section) -> Figure:
         columns['camber, closed loop, model [passive]'] = predicted
     camber.axhline(10.0, color='0.5', lw=0.8, ls='--')
     camber.set_ylabel('mean camber [% of passive]')
-    camber.legend(loc='center right')
+    drawing.legend(figure, camber)
     voltage.set(xlabel='t [ms]', ylabel='V [V]')
     made.series['fig5'] = {name: column[:min(map(len, columns.values()))]
                            for name, column in columns.items()}

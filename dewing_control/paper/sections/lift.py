@@ -6,7 +6,7 @@ import numpy as np
 
 from dewing_control.paper import drawing
 from dewing_control.paper.plan import Plan
-from dewing_control.paper.quantities import average, lines
+from dewing_control.paper.quantities import average, lines, shedding
 from dewing_control.paper.section import Figure, Found, Row, Section, Table
 from dewing_sim import spectrum
 
@@ -20,7 +20,7 @@ WHY = ('The chord is ours: 30 mm. At this Reynolds number frequencies scale as 1
 def section(plan: Plan, found: Found) -> Section:
     """Return history and spectrum of the lift."""
     made = Section('lift', 'Lift at 8 degrees in time (Fig. 3a)')
-    figure, axes = drawing.axes(1, 2, 2.9, width_ratios=(1.5, 1.0))
+    figure, axes = drawing.axes(1, 2, 3.1, width_ratios=(1.5, 1.0))
     history, power = axes[0]
     rows = []
     for run, style, colour in (('shed', '-', drawing.BLUE), ('shed other', '--', drawing.ORANGE)):
@@ -45,7 +45,7 @@ def section(plan: Plan, found: Found) -> Section:
         power.axvline(line, color='0.5', lw=0.8, ls=':')
     power.set(xlabel='f [Hz]', ylabel='power of Cl', xlim=(0.0, HIGHEST), ylim=(1.0e-9, 1.0e-1))
     history.set(xlabel='t [ms]', ylabel='Cl')
-    history.legend(loc='upper right')
+    drawing.legend(figure, history)
     made.figures.append(Figure('lift', 'Lift of the last part of the record, and its spectrum; '
                                'dotted: 26 and 51 Hz as printed.', drawing.png(figure)))
     made.tables.append(Table('Lift and its lines', (
@@ -57,12 +57,13 @@ def section(plan: Plan, found: Found) -> Section:
 
 
 def _text(found: Found) -> str:
-    found_lines = sorted(lines(found['shed']))
+    flight = found['shed']
+    listed = ', '.join(f'{line:.1f}' for line in sorted(lines(flight)))
     return ('The wing is not disturbed: it oscillates by itself, with the vortices that leave the '
-            f'leading edge. Lines of the lift above a thousandth of the strongest: '
-            f'{", ".join(f"{line:.1f}" for line in found_lines)} Hz. A line between 71 and 74 Hz '
-            'lies at the first frequency of the membrane in still air, 72.4 Hz, which is close '
-            'to three times the shedding frequency.')
+            f'leading edge. Lines of the lift above a thousandth of the strongest: {listed} Hz. '
+            f'The strongest is at {lines(flight, most=1)[0]:.1f} Hz. The first frequency of the '
+            f'membrane in still air is 72.4 Hz, close to three times the shedding frequency of '
+            f'{shedding(flight):.1f} Hz, so the third harmonic of the shedding is amplified.')
 
 
 def _row(engine: str, flight) -> tuple[str, ...]:
@@ -75,13 +76,13 @@ def _row(engine: str, flight) -> tuple[str, ...]:
 
 def _line_rows(found: Found) -> list[Row]:
     flight = found['shed']
-    measured = np.array(lines(flight))
-    if not measured.size:
+    measured, fundamental = np.array(lines(flight)), shedding(flight)
+    if not fundamental:
         return []
     resolution = 0.5 / (len(flight['time']) * flight.values['sample'])
     rows = []
     for number, printed in enumerate(PRINTED, 1):
-        near = measured[np.argmin(np.abs(measured - number * measured[0]))]
+        near = measured[np.argmin(np.abs(measured - number * fundamental))]
         chord = 1.0e3 * flight.values['chord'] * np.sqrt(near / printed)
         label = 'shedding frequency' if number == 1 else 'its first harmonic'
         rows.append(Row(f'8 deg: {label}', printed, float(near), 'Hz', resolution, None,

@@ -20,9 +20,10 @@ def section(plan: Plan, found: Found) -> Section:
     mean, amplitude = camber.mean(axis=1), 0.5 * np.ptp(camber, axis=1)
     figure, axes = drawing.axes(1, 2, 2.6)
     number = np.arange(1, periods + 1)
-    axes[0, 0].plot(number, 100.0 * (mean - 1.1), 'o-', color=drawing.BLUE)
+    axes[0, 0].semilogy(number, 100.0 * np.maximum(np.abs(mean - result.values['target']), 1.0e-9),
+                        'o-', color=drawing.BLUE)
     axes[0, 1].semilogy(number, 100.0 * amplitude, 'o-', color=drawing.ORANGE)
-    axes[0, 0].set(xlabel='period of 0.1 s', ylabel='mean less target [% of passive]')
+    axes[0, 0].set(xlabel='period of 0.1 s', ylabel='|mean less target| [% of passive]')
     axes[0, 1].set(xlabel='period of 0.1 s', ylabel='amplitude [% of passive]')
     settled = slice(2, None)
     drift = 100.0 * float(np.ptp(mean[settled])) if periods > 3 else 0.0

@@ -18,7 +18,7 @@ def section(plan: Plan, found: Found) -> Section:
     flight = found['shed']
     drawn = modes(shapes(flight))
     interval = flight['shape_time'][1] - flight['shape_time'][0]
-    figure, axes = drawing.axes(1, 2, 2.9, width_ratios=(1.4, 1.0))
+    figure, axes = drawing.axes(1, 2, 3.2, width_ratios=(1.4, 1.0))
     forms, energies = axes[0]
     rows, columns = [], {'x/c': STATIONS}
     for number in range(min(SHOWN, len(drawn.energy))):
@@ -34,7 +34,7 @@ def section(plan: Plan, found: Found) -> Section:
     energies.semilogy(numbers, 100.0 * drawn.energy[:len(numbers)], 'o-', color=drawing.BLUE)
     forms.set(xlabel='x/c', ylabel='mode, norm 1 over the chord', xlim=(0.0, 1.0))
     energies.set(xlabel='mode', ylabel='energy [%]')
-    forms.legend(loc='lower left')
+    drawing.legend(figure, forms)
     first = 100.0 * drawn.energy[0]
     return Section(
         'pod', 'Modes of the oscillation (Fig. 3b)',

@@ -100,7 +100,7 @@ def _figure(record, models: dict[int, Model], made: Section) -> Figure:
         axis.set_ylabel(label)
     late = record.y[1][3:]
     axes[1, 0].set_ylim(1.3e3 * late.min(), 1.3e3 * late.max())
-    axes[0, 0].legend(ncols=2)
+    drawing.legend(figure, axes[0, 0], 5)
     axes[1, 0].set(xlabel='t [ms]')
     made.series['pulse_response'] = columns
     return Figure('pulse', 'Response to a pulse of (400 V)² over one step, deviations from the '

@@ -76,7 +76,7 @@ def _gains(found: Found) -> Table:
 
 
 def _figure(found: Found, made: Section) -> Figure:
-    figure, axes = drawing.axes(1, 2, 2.7)
+    figure, axes = drawing.axes(1, 2, 3.0)
     left, right = axes[0]
     for name, label, colour, style in (
             ('fig5/open_loop', '3 % is the peak', drawing.BLUE, '-'),
@@ -99,7 +99,7 @@ def _figure(found: Found, made: Section) -> Figure:
     right.set(xlabel='t [ms]', ylabel='mean camber [% of passive]', title='printed gains',
               ylim=(-60.0, 100.0))
     left.set(xlabel='t [ms]', ylabel='mean camber [% of passive]', title='open loop')
-    left.legend(loc='lower left')
-    right.legend(loc='upper left')
+    for axis in axes[0]:
+        axis.legend(loc='upper left', bbox_to_anchor=(0.0, -0.2), ncols=2)
     return Figure('readings', 'Left: the disturbance read in two ways; dotted: the range of '
                   'Fig. 5. Right: the printed gains on the wing.', drawing.png(figure))

@@ -19,7 +19,7 @@ WHY_PLACE = ('The paper says that the maximum moves downstream, but prints 0.40 
 def section(plan: Plan, found: Found) -> Section:
     """Return the mean shapes and the rows of the static and the shedding wing."""
     made = Section('shapes', 'Mean shapes (Fig. 2)')
-    figure, ((axis,),) = drawing.axes(1, 1, 3.4)
+    figure, ((axis,),) = drawing.axes(1, 1, 3.9)
     columns = {'x/c': STATIONS}
     for degrees, colour in ((4, drawing.BLUE), (8, drawing.ORANGE)):
         name = 'rest' if degrees == 4 else 'shed'
@@ -38,7 +38,7 @@ def section(plan: Plan, found: Found) -> Section:
         _, height, place = PRINTED[degrees]
         axis.plot(place, height, 'x', color=colour, ms=8, mew=2, label=f'{degrees} deg, paper')
     axis.set(xlabel='x/c', ylabel='y* = 8 T0 y / (q c²)', xlim=(0.0, 1.0))
-    axis.legend(ncols=2, loc='lower center')
+    drawing.legend(figure, axis)
     made.figures.append(Figure('shapes', 'Mean deflection in units of that of a string under the '
                                'dynamic pressure. Crosses: the maxima printed in the paper. Band: '
                                'root mean square of the oscillation.', drawing.png(figure)))
