@@ -30,6 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help='leave out the first S seconds of the averages (default: half)')
     parser.add_argument('--every', type=int, default=10, metavar='N',
                         help='keep the membrane shape of every N-th step (default: 10)')
+    parser.add_argument('--save-state', metavar='FILE',
+                        help='write the last state of the wing as npz, for dewing plot')
     options.add_results(parser, 'write the whole run as npz')
     parser.set_defaults(duration=0.2)
 
@@ -41,15 +43,16 @@ def run(arguments: argparse.Namespace) -> None:
     from dewing_sim.history import Recorder
     with bar('preparing', 's', arguments.quiet) as show:
         loop = _prepare(case, arguments, settings, steps, show)
-    recorder, laps = Recorder(case, arguments.every), Laps()
+    recorder, laps, state = Recorder(case, arguments.every), Laps(), None
     try:
         with bar('simulating', 's', arguments.quiet) as show:
-            for _, outputs in until_interrupted(loop.steps):
+            for state, outputs in until_interrupted(loop.steps):
                 recorder.add(outputs)
                 laps.add()
                 show(len(recorder), steps, outputs.time)
     finally:
         if len(recorder):
+            _keep(arguments.save_state, state, case)
             _deliver(arguments, case, loop, recorder.history(), laps)
 
 
@@ -65,7 +68,7 @@ def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
     options.within('--every', arguments.every, 1, 1_000_000, 'steps')
     if arguments.skip is not None:
         options.within('--skip', arguments.skip, 0.0, arguments.duration, 's')
-    for path in filter(None, (arguments.out, arguments.json)):
+    for path in filter(None, (arguments.out, arguments.json, arguments.save_state)):
         check_free(path, arguments.force)
     _check_voltage(arguments.voltage, case)
     return case, settings, steps
@@ -115,6 +118,12 @@ def _prepare(case: Case, arguments: argparse.Namespace, settings: Any, steps: in
         voltage = case.actuation.voltage if arguments.voltage is None else arguments.voltage
         run = rollout(wing, rest, lambda _: voltage**2, steps)
     return Loop(wing, wing.observe(rest), run)
+
+
+def _keep(path: str | None, state: Any, case: Case) -> None:
+    if path:
+        from dewing_sim import checkpoint
+        checkpoint.save(path, state, case)
 
 
 def _deliver(arguments: argparse.Namespace, case: Case, loop: Loop, history, laps: Laps) -> None:

@@ -24,9 +24,6 @@ CHORDS = (0.025, 0.030, 0.035, 0.040, 0.050)    # m
 THICKNESSES = (5.0e-5, 5.0e-4)                  # m: as printed, and as 5 kV would need
 CONTROLLERS = ('open_loop', 'pid_tuned', 'periodic', 'lqg', 'mpc')
 TARGETS = {'fig5': 1.10, 'target_1': 1.00, 'target_097': 0.97}
-STEADY_SHARES = (0.25, 0.5, 0.7)                # of V_L, constant at 8 degrees
-SWINGS = (0.5, 1.0, 2.0)                        # of the shedding frequency, at 8 degrees
-HELD = (1.0, 1.3)                               # of the mean passive camber, at 8 degrees
 FILM = 0.0406                                   # s, a period of shedding
 
 
@@ -46,7 +43,9 @@ class Extent:
     variants: tuple[tuple[float, str, str, float], ...]     # degrees, engine, grid, dt in s
     scenarios: tuple[str, ...]
     chords: tuple[float, ...]
-    shares: tuple[float, ...]
+    shares: tuple[float, ...]       # of V_L, steady at 8 degrees
+    swings: tuple[float, ...]       # of the shedding frequency, at 8 degrees
+    held: tuple[float, ...]         # of the mean passive camber, at 8 degrees
     tuning: bool
 
 
@@ -61,15 +60,16 @@ FULL = Extent(
         (8.0, 'finite_volume', 'standard', 5.0e-5), (8.0, 'finite_volume', 'standard', 2.5e-5),
         (8.0, 'conformal', 'realtime', 5.0e-5), (8.0, 'conformal', 'standard', 1.0e-4),
         (8.0, 'conformal', 'standard', 5.0e-5), (8.0, 'conformal', 'reference', 5.0e-5)),
-    ('fig5', 'target_1', 'target_097'), CHORDS, STEADY_SHARES, True)
+    ('fig5', 'target_1', 'target_097'), CHORDS,
+    (0.25, 0.5, 0.7), (0.5, 1.0, 2.0), (1.0, 1.3), True)
 QUICK = Extent(
-    {'finite_volume': 'fast', 'conformal': 'realtime'}, 12.0, 3.0, 24.0, 15.0, 0.3, 0.1, 0.8,
-    16, (
+    {'finite_volume': 'fast', 'conformal': 'realtime'}, 12.0, 3.0, 24.0, 12.0, 0.3, 0.1, 0.6,
+    12, (
         (4.0, 'finite_volume', 'fast', 1.0e-4), (4.0, 'conformal', 'realtime', 1.0e-4),
         (4.0, 'conformal', 'standard', 1.0e-4),
         (8.0, 'finite_volume', 'fast', 1.0e-4), (8.0, 'conformal', 'realtime', 1.0e-4),
         (8.0, 'conformal', 'realtime', 2.0e-4)),
-    ('fig5',), (0.025, 0.030, 0.050), (0.5,), False)
+    ('fig5',), (0.025, 0.030, 0.050), (0.5,), (1.0,), (1.3,), False)
 
 
 @dataclass(frozen=True)
@@ -227,9 +227,9 @@ def _shedding_control(engine: str, extent: Extent) -> dict[str, Run]:
         for share in extent.shares}
     runs |= {f'alpha8/swing {ratio:g}': Flight(
         case, duration, voltage=round(0.5 * slack, 1), swing=1.0, frequency=ratio, lock='shed')
-        for ratio in SWINGS}
+        for ratio in extent.swings}
     time = duration * convective_time(case_of(case))
-    for target in HELD:
+    for target in extent.held:
         runs[f'alpha8/held {target:g}'] = Controlled(
             case, _settings({'reference.target': target}), time, 0.6 * time, passive='shed')
     return runs

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dewing_control.paper import drawing
-from dewing_control.paper.plan import HELD, SWINGS, Plan
+from dewing_control.paper.plan import Plan
 from dewing_control.paper.quantities import average, shedding
 from dewing_control.paper.result import Result
 from dewing_control.paper.section import Figure, Found, Section, Table
@@ -21,10 +21,10 @@ def section(plan: Plan, found: Found) -> Section:
     for share in plan.extent.shares:
         rows.append(_described(f'steady, {share:g} V_L', found[f'alpha8/steady {share:g}'],
                                passive))
-    for ratio in SWINGS:
+    for ratio in plan.extent.swings:
         rows.append(_described(f'swing of 100 % at {ratio:g} x shedding',
                                found[f'alpha8/swing {ratio:g}'], passive))
-    for target in HELD:
+    for target in plan.extent.held:
         rows.append(_held(f'camber held at {target:g}', found[f'alpha8/held {target:g}'],
                           passive))
     made = Section('alpha8', 'The self-excited wing at 8 degrees under V²', _text(rows),
@@ -92,7 +92,8 @@ def _text(rows: list[dict[str, Any]]) -> list[str]:
 
 
 def _figure(plan: Plan, found: Found, made: Section) -> Figure:
-    held = found[f'alpha8/held {HELD[-1]:g}']
+    target = plan.extent.held[-1]
+    held = found[f'alpha8/held {target:g}']
     passive = found['shed']
     figure, axes = drawing.axes(3, 1, 1.8, sharex=True)
     shown = held['time'][-1]
@@ -104,7 +105,7 @@ def _figure(plan: Plan, found: Found, made: Section) -> Figure:
         axis.plot(1.0e3 * passive['time'][early], open_loop, color=drawing.BLUE, lw=0.9,
                   label='passive')
         axis.plot(1.0e3 * held['time'], closed, color=drawing.ORANGE, lw=0.9,
-                  label=f'camber held at {HELD[-1]:g}')
+                  label=f'camber held at {target:g}')
     for axis, label in zip(axes[:, 0], ('camber / passive mean', 'Cl', 'V [V]')):
         axis.set_ylabel(label)
     drawing.legend(figure, axes[0, 0])
