@@ -46,7 +46,8 @@ def run(arguments: argparse.Namespace) -> None:
     recorder, laps, state = Recorder(case, arguments.every), Laps(), None
     try:
         with bar('simulating', 's', arguments.quiet) as show:
-            for state, outputs in until_interrupted(loop.steps):
+            for instant in until_interrupted(loop.steps):
+                state, outputs = instant
                 recorder.add(outputs)
                 laps.add()
                 show(len(recorder), steps, outputs.time)

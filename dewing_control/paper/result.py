@@ -55,7 +55,8 @@ def code() -> str:
                *Path(dewing_sysid.__file__).parent.glob('*.py'),
                *Path(dewing_control.__file__).parent.glob('*.py'),
                *(ours / f'{name}.py' for name in (
-                   'flight', 'controlled', 'experiments', 'designed', 'film', 'result'))]
+                   'flight', 'controlled', 'experiments', 'designed', 'film', 'watched',
+                   'quantities', 'result'))]
     digest = hashlib.sha256()
     for source in sorted(sources):
         digest.update(source.read_bytes())
