@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run every controller on every scenario; controllers know the nominal wing only.
 
-On a wing that differs from the nominal one a controller still measures the camber against that at
-rest, which an operator can read off, but V_L^2 and the model are nominal.
+On a wing that differs from the nominal one a controller still measures the camber against the
+passive one, which an operator can read off, but V_L^2, model and sampling time are nominal.
 """
 
 import dataclasses
@@ -54,7 +54,9 @@ def controller(name: str, plan: Plan, scenario: Scenario, identity: Identity,
         return None
     changes = {
         'kind': KIND.get(name, name), 'reference.target': scenario.target,
-        'reference.rate': scenario.rate, 'disturbance_model.frequency': scenario.told}
+        'reference.rate': scenario.rate, 'disturbance_model.frequency': scenario.told,
+        'command.period_steps': round(
+            plan.settings.command.period_steps * plan.nominal.dt / identity.dt)}
     if name == 'pid_paper':
         printed = printed_gains(plan.nominal)
         changes |= {f'pid.{gain}': value for gain, value in printed.items()}
@@ -74,7 +76,7 @@ def run_scenario(plan: Plan, name: str, names: Sequence[str] = CONTROLLERS,
     for which in names:
         run = trial.run(built.plant, built.rest, controller(which, plan, scenario, built.identity),
                         round(plan.duration / built.plant.dt), built.plant.case.membrane,
-                        scenario.noise)
+                        scenario.noise, passive=built.identity.camber_mean)
         figures = trial.figures(run, scenario.target, built.identity.v_squared_max, plan.skip)
         results[which] = figures, run
     for figures, _ in results.values():

@@ -12,6 +12,7 @@ exactly, while in u it is a = 1/(1 - u). Near the rest state w and u agree to fi
 model identified from V^2 serves both.
 """
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -118,12 +119,21 @@ class Design:
         return frequency_response(self.a, self.b, self.c, 0.0, frequency, self.dt)
 
 
-def load(path: str, output: str, steps: int = 1) -> Design:
-    """Return the design model in the npz file ``path``; raise `BadInput` as `Design.of`."""
+def load(path: str, output: str, period: float) -> Design:
+    """Return the design model in the npz file ``path`` for a control period in s.
+
+    Raises `BadInput` as `Design.of`, and if the model does not step into the period.
+    """
     if not path:
         raise BadInput('model is empty: this kind of controller needs the npz file of an '
                        'identified model, as written by dewing identify and dewing tune')
-    return Design.of(reduced.load(path), output, steps)
+    model = reduced.load(path)
+    steps = round(period / model.dt)
+    if steps < 1 or not math.isclose(steps * model.dt, period, rel_tol=1.0e-6):
+        raise BadInput(f'{path}: the model steps by {model.dt:g} s, of which the control period, '
+                       f'{period:g} s, is no multiple; identify the wing at its own time step, '
+                       'or change command.period_steps')
+    return Design.of(model, output, steps)
 
 
 def frequency_response(a, b, c, d, frequency, dt: float) -> np.ndarray:

@@ -23,7 +23,7 @@ def law(settings: ControllerSettings, identity: Identity, model: Design | None =
         from dewing_control.periodic import Periodic
         return Periodic.of(settings, identity)
     model = model or design.load(settings.model, settings.reference.output,
-                                 settings.command.period_steps)
+                                 settings.command.period_steps * identity.dt)
     if settings.kind == 'lqg':
         from dewing_control.lqg import Lqg
         return Lqg.of(settings, identity, model)

@@ -20,7 +20,7 @@ class Trial:
     """Arrays (n,) of a run; sample k is the end of step k."""
 
     dt: float
-    camber: np.ndarray              # a/a_ref, a_ref at rest
+    camber: np.ndarray              # a/a_ref, a_ref the passive one
     v_squared: np.ndarray           # V^2
     cl: np.ndarray
     cd: np.ndarray
@@ -35,15 +35,16 @@ class Trial:
 
 
 def run(plant: Plant, rest: Any, controller: Controller | None, steps: int, membrane: Membrane,
-        noise: float = 0.0, seed: int = 1) -> Trial:
+        noise: float = 0.0, seed: int = 1, passive: float | None = None) -> Trial:
     """Return a run from ``rest`` under ``controller``, or at the V^2 of rest without one.
 
-    ``noise`` (of the camber at rest) is the standard deviation of a white noise on the measured
-    cambers. A failing plant ends the run, which keeps what was computed.
+    ``passive`` is the camber (m) that all are relative to, by default that at rest; ``noise``, in
+    it, is the standard deviation of a white noise on the measured cambers. A failing plant ends
+    the run, which keeps what was computed.
     """
     generator = np.random.default_rng(seed)
     state, outputs, rows, failure = rest, plant.observe(rest), [], ''
-    v_squared, memory, passive = outputs.v_squared, None, outputs.camber_mean
+    v_squared, memory, passive = outputs.v_squared, None, passive or outputs.camber_mean
     if controller is not None:
         memory = controller.start(v_squared)
     for _ in range(steps):
@@ -76,7 +77,7 @@ def _noisy(measurement: Measurement, noise: float, generator) -> Measurement:
 def figures(trial: Trial, target: float, limit: float, skip: float) -> dict[str, Any]:
     """Return the figures of ``trial`` after ``skip`` s (of a failed run: of its second half).
 
-    Cambers are in that at rest; amplitude is half the range, ``limit`` the largest V^2. Energy
+    Cambers are in the passive one; amplitude is half the range, ``limit`` the largest V^2. Energy
     is that of the whole run, powers are means after ``skip``; both are per metre of span.
     """
     begin = round(skip / trial.dt)

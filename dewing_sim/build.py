@@ -39,12 +39,12 @@ def build(settings: SimulatorSettings, case: Case, progress=None) -> Built:
 
 def build_wing(case: Case, progress=None) -> Built:
     """Return the Navier-Stokes wing of ``case``, trimmed."""
-    from dewing_sim import checkpoint
+    from dewing_sim import checkpoint, passive
     from dewing_sim.wing import Wing
     wing = Wing(case)
     rest = wing.rest(progress)
     identity = Identity.of('wing', wing, rest, case.actuation.voltage_limit**2,
-                           parameters.to_mapping(case))
+                           parameters.to_mapping(case), passive.camber(wing, rest, progress))
 
     def load(path: str) -> Any:
         if checkpoint.load_case(path) != case:

@@ -37,8 +37,8 @@ class Identity:
 
     plant: str                      # wing or reduced
     dt: float                       # s
-    camber_mean: float              # m, at rest: a_ref of a controller on mean camber
-    camber_max: float               # m, at rest: a_ref of a controller on maximum camber
+    camber_mean: float              # m, passive: a_ref of a controller on mean camber
+    camber_max: float               # m, passive: a_ref of a controller on maximum camber
     v_squared_slack: float          # V^2 at the loss of tension, V_L^2
     v_squared_max: float            # V^2 the plant accepts
     case: dict                      # nested parameters of the case, empty when unknown
@@ -46,11 +46,15 @@ class Identity:
 
     @classmethod
     def of(cls, name: str, plant: Plant, rest: Any, v_squared_max: float, case: dict,
-           ) -> 'Identity':
-        """Return the identity of ``plant``; raise `BadInput` for unusable references."""
-        outputs = plant.observe(rest)
-        identity = cls(name, float(plant.dt), float(outputs.camber_mean),
-                       float(outputs.camber_max), float(plant.v_squared_slack),
+           camber: tuple[float, float] | None = None) -> 'Identity':
+        """Return the identity of ``plant``; raise `BadInput` for unusable references.
+
+        ``camber`` is the passive one in m, its chord average and maximum: by default at ``rest``.
+        """
+        if camber is None:
+            outputs = plant.observe(rest)
+            camber = float(outputs.camber_mean), float(outputs.camber_max)
+        identity = cls(name, float(plant.dt), *camber, float(plant.v_squared_slack),
                        float(v_squared_max), case, version())
         return identity.checked()
 

@@ -91,8 +91,8 @@ def solver_sources() -> bytes:
     """Return the text of the modules that compute a step and the rest state."""
     package = Path(__file__).parent
     sources = [*package.glob('fluid/**/*.py'), *package.glob('structure/*.py'),
-               *(package / name for name in ('interface.py', 'plate.py', 'scales.py', 'trim.py',
-                                             'wing.py'))]
+               *(package / name for name in ('interface.py', 'passive.py', 'plate.py',
+                                             'scales.py', 'trim.py', 'wing.py'))]
     return b''.join(source.read_bytes() for source in sorted(sources))
 
 

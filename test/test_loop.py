@@ -144,7 +144,7 @@ def test_fundamental_keeps_static_gain_frequency_and_damping():
 
 def test_unusable_models_are_refused(tmp_path):
     with pytest.raises(BadInput, match='model is empty'):
-        load('', 'camber_mean')
+        load('', 'camber_mean', 1.0e-4)
     with pytest.raises(BadInput, match='no output tension'):
         Design.of(reduced_model(), 'tension')
     import dataclasses
@@ -153,9 +153,17 @@ def test_unusable_models_are_refused(tmp_path):
         Design.of(dataclasses.replace(model, A=1.2 * model.A), 'camber_mean')
     with pytest.raises(BadInput, match='camber falls with V'):
         Design.of(dataclasses.replace(model, C=-model.C), 'camber_mean')
-    path = tmp_path / 'model.npz'
-    reduced.save(path, model)
-    np.testing.assert_array_equal(load(str(path), 'camber_mean').a, design_model().a)
+
+
+def test_a_model_is_sampled_at_the_control_period(tmp_path):
+    path = str(tmp_path / 'model.npz')
+    reduced.save(path, reduced_model())
+    for steps in (1, 3):
+        np.testing.assert_array_equal(load(path, 'camber_mean', steps * 1.0e-4).a,
+                                      design_model(steps).a)
+    for period in (5.0e-5, 1.5e-4):
+        with pytest.raises(BadInput, match=rf'control period, {period:g} s, is no multiple'):
+            load(path, 'camber_mean', period)
 
 
 def test_compensator_response_is_its_transfer_function():
