@@ -65,9 +65,8 @@ class Controlled:
         model = design_of(inputs[self.model]) if self.model else None
         steps = round(self.duration / built.plant.dt)
         run = trial.run(Watched(built.plant, steps, tick), built.rest,
-                        _controller(settings, identity, model), steps, case.membrane)
-        scale = built.identity.camber_mean / identity.camber_mean
-        run = dataclasses.replace(run, camber=scale * run.camber)
+                        _controller(settings, identity, model), steps, case.membrane,
+                        passive=identity.camber_mean)
         target = settings.reference.target if settings else 1.0
         values = trial.figures(run, target, _limit(case, settings),
                                self.duration - self.averaged)
