@@ -35,13 +35,14 @@ SHORT = {
     'identify': '--grid fast --set numerics.trim_time=0.1 --set membrane.elements=16'
                 ' --set experiment.record=0.4 --set fresh.record=0.2 --window 0.2 --order 4'
                 ' --processes 1',
-    'bag': '',
+    'bag': '', 'plot': '',
 }
 # Blocks that `make long` executes, by their first line.
 LONG = (
     'make demo', 'python3 -m venv ~/dewing-env',
     "make test PYTEST_OPTIONS='test/test_examples.py'",
     'dewing material --case paper --out docs/images/material/paper --force',
+    '.venv/bin/dewing paper --out out/paper',
     'dewing_controller &', 'dask scheduler --port 8786 &',
 )
 # Commands within the text that `make long` executes, each in a folder of its own.
@@ -60,6 +61,8 @@ LONG_IN_TEXT = (
 ELSEWHERE = {
     'make long': 'executes all others',
     'make links': 'needs the network',
+    'dewing plot last.npz --film 0.04 --out shedding.gif':
+        'test/test_plot.py does, with fewer frames',
     'dewing identify --from run.mcap': 'test/test_sysid_node.py does, with a recorded campaign',
 }
 # Blocks that need a system ROS; `make long` executes them where there is one.
