@@ -57,8 +57,10 @@ def free_sheet(axes, curves: Curves):
 
 def camber(axes, curves: Curves):
     """Draw the static camber of both elements against the voltage."""
-    for (name, values), style in zip(curves.camber.items(), ('k-', 'C1--')):
-        axes.plot(curves.camber_voltage, 100.0 * values, style, label=name)
+    for name, style, label in (('membrane', 'k-', 'membrane'),
+                               ('solid', 'C1--', 'solid, lower side pinned'),
+                               ('solid_middle', 'C0:', 'solid, pinned in the middle')):
+        axes.plot(curves.camber_voltage, 100.0 * curves.camber[name], style, label=label)
     axes.set(xlabel='voltage [V]', ylabel='static camber [% chord]')
     axes.legend()
 

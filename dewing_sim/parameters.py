@@ -73,6 +73,7 @@ class Membrane:
     relative_permittivity: float = real('-', 'eps_r of the elastomer', 1.0, 1.0e3)
     element: str = choice('two-node membrane, or solid elements through the thickness',
                           'membrane', 'solid')
+    support: str = choice('where solid elements are pinned at the edges', 'lower', 'middle')
     elements: int = count('elements along the chord', 4, 2000)
     viscous_share: float = real(
         '-', 'modulus of the relaxing branch over mu, 0: elastic', 0.0, 100.0)

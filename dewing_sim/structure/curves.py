@@ -11,11 +11,15 @@ from dewing_sim import parameters
 from dewing_sim.structure import elements, limits
 from dewing_sim.structure.material import Elastomer, diagonal
 from dewing_sim.structure.membrane import Membrane
+from dewing_sim.structure.pins import LOWER, MIDDLE
 from dewing_sim.structure.sheet import Sheet
 from dewing_sim.structure.solid import Solid
 
 POINTS = 200
 VOLTAGES = 11
+STRUCTURES = {'membrane': {'element': 'membrane'},
+              'solid': {'element': 'solid', 'support': LOWER},
+              'solid_middle': {'element': 'solid', 'support': MIDDLE}}
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ class Curves:
     pull_in: limits.PullIn | None       # None if the Gent limit comes first
     thickness: float                    # before prestretch, m
     camber_voltage: np.ndarray
-    camber: dict[str, np.ndarray]       # element -> largest static deflection in chords
+    camber: dict[str, np.ndarray]       # structure -> largest static deflection in chords
 
     def metrics(self) -> dict[str, float]:
         """Return the numbers of the curves; those of a pull-in only if there is one."""
@@ -42,12 +46,14 @@ class Curves:
                       'pull_in_voltage': self.pull_in.field * self.thickness}
             if np.isfinite(self.pull_in.snapped_stretch):
                 found['snapped_stretch'] = self.pull_in.snapped_stretch
-        for element, camber in self.camber.items():
-            found[f'camber_{element}_passive'] = float(camber[0])
-            found[f'camber_{element}_highest'] = float(camber[-1])
+        for name, camber in self.camber.items():
+            found[f'camber_{name}_passive'] = float(camber[0])
+            found[f'camber_{name}_highest'] = float(camber[-1])
         found['highest_voltage'] = float(self.camber_voltage[-1])
-        difference = self.camber['solid'] / self.camber['membrane'] - 1.0
-        return found | {'largest_difference': float(np.abs(difference).max())}
+        for name in ('solid', 'solid_middle'):
+            difference = self.camber[name] / self.camber['membrane'] - 1.0
+            found[f'largest_difference_{name}'] = float(np.abs(difference).max())
+        return found
 
 
 def of_section(section: parameters.Membrane, pressure: float, voltage_limit: float) -> Curves:
@@ -69,8 +75,8 @@ def of_section(section: parameters.Membrane, pressure: float, voltage_limit: flo
         np.array([sheet.respond([section.prestretch], v * v).tension[0] for v in voltage]), slack,
         free, limits.equibiaxial_field(elastomer, free) * section.initial_thickness,
         _pull_in(elastomer), section.initial_thickness, camber_voltage,
-        {name: cambers(elements.make(parameters.replace(section, {'element': name})), pressure,
-                       camber_voltage) for name in elements.ELEMENTS})
+        {name: cambers(elements.make(parameters.replace(section, changes)), pressure,
+                       camber_voltage) for name, changes in STRUCTURES.items()})
 
 
 def cambers(structure: Membrane | Solid, pressure: float, voltage: np.ndarray) -> np.ndarray:

@@ -23,6 +23,7 @@ from dewing_sim.structure import solid_assembly as assembly
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
 from dewing_sim.structure.motion import Motion
+from dewing_sim.structure.pins import LOWER, MIDDLE, Springs, equations, mid_plane_weights
 from dewing_sim.structure.sheet import SI, Sheet
 from dewing_sim.structure.solid_element import BALANCED, LOCKED
 from dewing_sim.structure.strip import lengths, nodal_mass, straight_edges
@@ -32,7 +33,6 @@ HALF_BAND = 7               # couplings of a degree of freedom on either side
 EDGE_LENGTH = 2.0           # of the first element, in deformed thicknesses
 EDGE_LAYER = 6.0            # deformed thicknesses, in which the mid-plane leaves the pins
 FITS = 10                   # of the reference length
-LOWER, FACE = 'lower', 'face'
 
 
 class Response(NamedTuple):
@@ -47,10 +47,9 @@ class Response(NamedTuple):
 class Solid(Taut):
     """A prestretched strip of hexahedra between (0, 0) and (chord, 0).
 
-    ``support`` is ``lower`` (the lower side of the edges is pinned) or ``face`` (the whole faces
-    of the edges, with the mid-plane at zero height). ``length`` (n,) are the element lengths
-    before prestretch; ``mass`` (2(n+1),) is lumped at the nodes; ``rest_position`` (2(n+1), 2) is
-    the unloaded equilibrium.
+    ``support`` is `pins.LOWER` or `pins.MIDDLE`. ``length`` (n,) are the element lengths before
+    prestretch; ``mass`` (2(n+1),) is lumped at the nodes; ``rest_position`` (2(n+1), 2) is the
+    unloaded equilibrium.
     """
 
     sheet: Sheet
@@ -66,8 +65,9 @@ class Solid(Taut):
                 elements: int, support: str = LOWER) -> 'Solid':
         """Return a strip of ``elements`` equal elements, shorter ones at the edges.
 
-        The ends give way, so the strip is cut a little shorter than chord / prestretch: at rest
-        and without voltage the interior carries the prestretch. ``density`` is the elastomer's.
+        Edges pinned at their lower side give way, so such a strip is cut a little shorter than
+        chord / prestretch: at rest and without voltage the interior carries the prestretch.
+        ``density`` is the elastomer's.
         """
         if elements < 4:
             raise BadInput(f'elements = {elements} is out of range: at least 4')
@@ -77,9 +77,9 @@ class Solid(Taut):
         position[:, 0] = np.repeat(chord * np.concatenate([[0.0], np.cumsum(share)]), 2)
         position[0::2, 1], position[1::2, 1] = -0.5 * thickness, 0.5 * thickness
         total = chord / prestretch
-        solid = cls(sheet, prestretch, chord, FACE, total * share,
+        solid = cls(sheet, prestretch, chord, MIDDLE, total * share,
                     nodal_mass(total * share, sheet, density), position)
-        return solid if support == FACE else _fitted(solid, density)
+        return solid if support == MIDDLE else _fitted(solid, density)
 
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Solid':
@@ -92,7 +92,7 @@ class Solid(Taut):
                            'are elastic; take membrane.element = membrane or a share of 0.0')
         return cls.uniform(Sheet.from_parameters(section, scales), section.prestretch,
                            section.density / scales.density, section.chord / scales.length,
-                           section.elements)
+                           section.elements, section.support)
 
     @property
     def elements(self) -> int:
@@ -106,24 +106,23 @@ class Solid(Taut):
 
     @cached_property
     def _equations(self) -> np.ndarray:
-        """Number of each coordinate among the free ones, -1 at pins: (n+1, bottom or top, 2)."""
-        fixed = np.zeros((self.elements + 1, 2, 2), dtype=bool)
-        fixed[[0, -1], :1 if self.support == LOWER else 2] = True
-        return np.where(fixed, -1, np.cumsum(~fixed).reshape(fixed.shape) - 1)
+        return equations(self.elements, self.support)
 
     @cached_property
     def _share(self) -> np.ndarray:
-        """Weights of bottom and top in the mid-plane with the pins at its ends, (n+1, 2)."""
-        share = np.full((self.elements + 1, 2), 0.5)
-        if self.support == LOWER:
-            share[[0, -1]] = 1.0, 0.0
-        return share
+        return mid_plane_weights(self.elements, self.support)
+
+    @cached_property
+    def _springs(self) -> Springs | None:
+        return (Springs(self.rest_position, self.rest_tension(0.0),
+                        self.sheet.elastomer.bulk_modulus)
+                if self.support == MIDDLE else None)
 
     def surface(self, nodal: np.ndarray) -> np.ndarray:
         """Return what the flow sees of nodal positions or velocities, (n+1, 2).
 
-        That is the mid-plane and, within a few thicknesses of the edges, where the strip bends
-        away from its line of tension, the straight line to the pins.
+        That is the mid-plane and, within a few thicknesses of edges pinned at their lower side,
+        where the strip bends away from its line of tension, the straight line to the pins.
         """
         line = self._mid_plane(nodal)
         inner, left, right = self._edges
@@ -150,7 +149,8 @@ class Solid(Taut):
     @cached_property
     def _edges(self) -> tuple[int, np.ndarray, np.ndarray]:
         """Stations on the straight edges, and their weights of the pin and the end, (k, 2)."""
-        layer = EDGE_LAYER * self.sheet.initial_thickness / self.prestretch
+        thickness = self.sheet.initial_thickness / self.prestretch
+        layer = EDGE_LAYER * thickness if self.support == LOWER else 0.0
         return straight_edges(self._mid_plane(self.rest_position)[:, 0], layer)
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
@@ -164,6 +164,8 @@ class Solid(Taut):
         force, tension, thinning, status, k = assembly.respond(
             position, *self._constants(v_squared))
         self._require_balance(status, k, position, v_squared)
+        if self._springs:
+            self._springs.add_force(force, position)
         return Response(force, tension, self.sheet.initial_thickness * thinning)
 
     def tension(self, position: np.ndarray, v_squared: float) -> np.ndarray:
@@ -189,7 +191,9 @@ class Solid(Taut):
 
     def energies(self, position: np.ndarray, v_squared: float) -> tuple[float, float]:
         """Return the elastic and the electrostatic energy (C V^2 / 2) per unit span."""
-        return assembly.energies(position, *self._constants(v_squared))
+        elastic, electric = assembly.energies(position, *self._constants(v_squared))
+        held = self._springs.energy(position) if self._springs else 0.0
+        return elastic + held, electric
 
     def tangent(self, position: np.ndarray, v_squared: float, pressure=0.0,
                 before: np.ndarray | None = None) -> np.ndarray:
@@ -204,6 +208,8 @@ class Solid(Taut):
                                        self._equations.ravel(),
                                        position if before is None else before, band)
         self._require_balance(status, k, position, v_squared)
+        if self._springs:
+            self._springs.add_stiffness(band)
         if np.any(pressure):
             subtract_stiffness(band, np.full(self.elements, pressure, dtype=float),
                                self._equations, self._share)
@@ -248,7 +254,7 @@ class Solid(Taut):
 
 
 def _fitted(solid: Solid, density: float) -> Solid:
-    """Return a strip on lower pins whose interior rests at the prestretch, from one on faces."""
+    """Return a strip on lower pins whose interior rests at the prestretch, from one held in the middle."""
     target = solid.rest_tension(0.0)
     slope = float(solid.sheet.respond([solid.prestretch], 0.0).stiffness[0]) * solid.prestretch
     hanging = _released(solid)
