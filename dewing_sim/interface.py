@@ -56,31 +56,31 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     are accelerated, so is the membrane.  Raises `NotConverged` after ``passes``.
     """
     coasting = _coasting(fluid, structure, motion)
+    step = dynamics.Step(structure, motion, dt, v_squared, operator, damping)
 
     def moved_under(jump, velocity, guess, **accuracy):
         load = Load(fluid, structure, jump, velocity, wall_pressure, onset)
-        return dynamics.advance(structure, motion, dt, v_squared, load, operator, damping,
-                                guess=guess, **accuracy)
+        return step.reach(load, guess, **accuracy)
 
     position = motion.predict(dt)
     if len(still_jumps):
         jump = np.dot(EXTRAPOLATION[len(still_jumps) - 1], still_jumps)
         try:
-            position = moved_under(jump, coasting, position, tolerance=FORESEEN).position
+            position = moved_under(jump, coasting, position, tolerance=FORESEEN)
         except RunFailed:
             pass                # only a guess: the passes will tell whether the step can be made
     wall = wall_of(fluid.columns, structure.surface(position),
                    structure.surface(motion.rate(position, dt)))
     for iteration in range(1, passes + 1):
         prediction = fluid.predict(flow, wall, onset)
-        moved = moved_under(prediction.jump, wall.velocity, position)
-        position = moved.position
+        position = moved_under(prediction.jump, wall.velocity, position)
         before, wall = wall, wall_of(fluid.columns, structure.surface(position),
-                                     structure.surface(moved.velocity))
+                                     structure.surface(motion.rate(position, dt)))
         residual = shape_change(wall.height, before.height)
         if residual <= tolerance:
             still = prediction.jump + fluid.resistance @ (before.velocity - coasting)
-            return Coupled(fluid.correct(prediction, wall.velocity), moved, iteration, residual,
+            return Coupled(fluid.correct(prediction, wall.velocity), step.end(position),
+                           iteration, residual,
                            np.array([still, *still_jumps[:len(EXTRAPOLATION) - 1]]))
     raise NotConverged(f'coupling: the shape still changes by {residual:.3g} of its deflection '
                        f'after {passes} passes (tolerance {tolerance:.3g}); '

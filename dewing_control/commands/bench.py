@@ -24,6 +24,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     engines = options.numerics_field('engine').metadata['options']
     parser.add_argument('--case', default='paper', help='case (default: paper)')
+    parser.add_argument('--set', action='append', default=[], metavar='SECTION.KEY=VALUE',
+                        help='change one parameter; may be repeated')
     parser.add_argument('--engine', default='finite_volume', metavar='NAME',
                         help=f'flow solver: {", ".join(engines)} (default: finite_volume)')
     parser.add_argument('--presets', nargs='+', metavar='NAME',
@@ -37,9 +39,11 @@ def run(arguments: argparse.Namespace) -> None:
     options.within('--steps', arguments.steps, BLOCK, 10**6, 'steps')
     if arguments.json:
         check_free(arguments.json, arguments.force)
+    changes = dict(map(parameters.parse_assignment, arguments.set))
     presets = {}
     for preset in chosen_presets(arguments):
-        presets[preset] = time_preset(arguments.case, arguments.engine, preset, arguments.steps)
+        presets[preset] = time_preset(
+            arguments.case, arguments.engine, preset, arguments.steps, changes)
         if not arguments.quiet:
             print(preset)
             flat = presets[preset] | presets[preset]['parts']
@@ -70,10 +74,11 @@ def machine() -> dict[str, Any]:
             'numba': numba.__version__}
 
 
-def time_preset(case: str, engine: str, preset: str, steps: int) -> dict[str, Any]:
+def time_preset(case: str, engine: str, preset: str, steps: int,
+                changes: dict[str, Any]) -> dict[str, Any]:
     """Return cells, times and their parts of ``case`` on one grid preset of an engine."""
     from dewing_sim.wing import Wing
-    wing = Wing(parameters.load(case, changes={
+    wing = Wing(parameters.load(case, changes=changes | {
         'numerics.engine': engine, 'numerics.grid': preset, 'numerics.trim_time': 2.0}))
     state = wing.rest()
     v_squared = wing.case.actuation.voltage**2

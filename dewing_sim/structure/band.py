@@ -7,7 +7,7 @@ to the few columns of the flow. Sherman, Morrison and Woodbury's formula joins t
 written out, so that no BLAS or thread changes a bit of the result.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numba
 import numpy as np
@@ -63,8 +63,25 @@ def substitute(factors, right):
 
 
 @numba.njit(cache=True)
+def substitute_one(factors, right):
+    """Return the solution (m,) for ``right`` (m,)."""
+    m, width = factors.shape[0], factors.shape[1] - 1
+    solution = right.copy()
+    for column in range(m):
+        value = solution[column]
+        for i in range(1, min(width, m - 1 - column) + 1):
+            solution[column + i] -= factors[column, i] * value
+    for column in range(m - 1, -1, -1):
+        value = solution[column] / factors[column, 0]
+        for i in range(1, min(width, m - 1 - column) + 1):
+            value -= factors[column, i] * solution[column + i]
+        solution[column] = value
+    return solution
+
+
+@numba.njit(cache=True)
 def _correct(solution, basis, core, solved):
-    """Return solution - solved core basis solution, with basis and solved (m, k)."""
+    """Return solution - solved core basis^T solution, with basis and solved (m, k)."""
     share = np.zeros(core.shape[0])
     for i in range(solution.size):
         for k in range(share.size):
@@ -113,9 +130,16 @@ class Inverse:
         core = np.eye(len(weight)) + weight @ (basis.T @ solved)
         return cls(factors, basis, np.linalg.solve(core, weight), solved)
 
+    def about(self, band: np.ndarray) -> 'Inverse':
+        """Return the inverse for another ``band`` with the correction for the low rank as here.
+
+        It is inexact to the extent that the bands differ: good enough for iterations.
+        """
+        return replace(self, factors=factorise(band))
+
     def __call__(self, vector: np.ndarray) -> np.ndarray:
         """Return the product with ``vector`` (m,)."""
-        solution = substitute(self.factors, vector.reshape(-1, 1)).ravel()
+        solution = substitute_one(self.factors, vector)
         if not len(self.core):
             return solution
         return _correct(solution, self.basis, self.core, self.solved)

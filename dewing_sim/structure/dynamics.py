@@ -1,6 +1,6 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""One implicit time step of a structure under a given load: BDF2 with chord-Newton iterations.
+"""One implicit time step of a structure under a given load: BDF2 with Newton iterations.
 
 With d positions, w velocities and kappa = 3 / (2 dt), on the free degrees of freedom,
 
@@ -16,14 +16,14 @@ from typing import Callable, Protocol
 import numba
 import numpy as np
 
-from dewing_sim.errors import Diverged, NotConverged
+from dewing_sim.errors import Diverged, NotConverged, RunFailed
 from dewing_sim.structure.band import Inverse, LowRank
 from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.statics import march
 
 ITERATIONS = 30
 SMALLEST_SHARE = 2.0 ** -6
-SHRINKAGE = 4.0     # a chord correction that shrinks by less is replaced by Newton's
+SHRINKAGE = 4.0     # a correction by an old tangent that shrinks by less is replaced
 
 Load = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
@@ -58,6 +58,10 @@ class Structure(Protocol):
     def spread(self, force: np.ndarray) -> np.ndarray:
         """Return the nodal forces of forces (n + 1, 2) on the surface, its transpose."""
 
+    @property
+    def linear_range(self) -> float:
+        """Length of corrections beyond which a tangent made before them is of no use."""
+
     def during(self, motion: Motion, dt: float, v_squared: float) -> 'Structure':
         """Return the structure with what it remembers in the step that follows ``motion``."""
 
@@ -90,17 +94,18 @@ class Operator:
         """
         position = structure.rest_position if position is None else position
         resistance = resistance or LowRank.zero(position.ravel()[structure.free].size)
-        return cls(resistance, _inverse(structure, position, v_squared, dt, resistance, damping))
+        band = _band(structure, position, v_squared, dt, damping)
+        return cls(resistance, Inverse.of(band, resistance, 1.5 / dt))
 
 
-def _inverse(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
-             resistance: LowRank, damping: float, before: np.ndarray | None = None) -> Inverse:
-    """Return the inverse of kappa^2 M + kappa (R + damping M) + K(position)."""
+def _band(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
+          damping: float, before: np.ndarray | None = None) -> np.ndarray:
+    """Return kappa^2 M + kappa damping M + K(position) as a band."""
     kappa = 1.5 / dt
     band = structure.tangent(position, v_squared, 0.0, before)
     band[len(band) // 2] += kappa * (kappa + damping) * np.repeat(structure.mass, 2)[
         structure.free]
-    return Inverse.of(band, resistance, kappa)
+    return band
 
 
 @numba.njit(cache=True)
@@ -118,104 +123,110 @@ def _imbalance(mass, velocity, now, before, dt, damping, internal, load):
 def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, load: Load,
             operator: Operator, damping: float = 0.0, tolerance: float = 1.0e-10,
             guess: np.ndarray | None = None) -> Motion:
-    """Return the motion one step later, a pure function of the arguments.
-
-    ``load(position, velocity)`` returns the external nodal forces (nodes, 2), affine in velocity
-    with the slope -``operator.resistance``. ``damping`` is mass-proportional (1/time). Iterates
-    from ``guess`` (`Motion.predict` by default) until the largest correction falls below
-    ``tolerance`` chords; where that is slow with ``operator``, with a fresh one; and where the
-    guess is poor, as after a jump of voltage, by Newton's method from the present position, if
-    necessary in several shares of the imbalance there. Raises `Slack`, `Diverged` or
-    `NotConverged`.
-    """
-    structure = structure.during(motion, dt, v_squared)
-    step = _Step(structure, motion, dt, v_squared, load, operator, damping, tolerance)
+    """Return the motion one step later under one load, see `Step`. Raises `Slack` also."""
+    step = Step(structure, motion, dt, v_squared, operator, damping)
     start = motion.predict(dt) if guess is None else guess
-    position = step.by_chords(start, operator.inverse)
-    if position is None:
-        position = step.by_chords(start, None)
-    if position is None:
-        position = march(step.by_newton, motion.position, SMALLEST_SHARE)
-    structure.require_taut(position, v_squared)
-    return Motion(position, motion.rate(position, dt), motion.position, motion.velocity,
-                  structure.after(motion, position, v_squared, dt))
+    return step.end(step.reach(load, start, tolerance))
 
 
-@dataclass(frozen=True)
-class _Step:
-    """The equations of one step, see `advance`."""
+class Step:
+    """The equations of one time step, solved for one load after another.
 
-    structure: Structure
-    motion: Motion
-    dt: float
-    v_squared: float
-    load: Load
-    operator: Operator
-    damping: float
-    tolerance: float
+    Loads ``load(position, velocity)`` return the external nodal forces (nodes, 2), affine in
+    velocity with the slope -``operator.resistance``. ``damping`` is mass-proportional (1/time).
+    Newton's method goes on until the largest correction falls below a tolerance (chords). It keeps
+    a tangent, at first that of ``operator``, as long as corrections stay in the linear range of
+    the structure and shrink well; new tangents keep the flow's part of the operator. The last
+    tangent serves the next load. Where that fails, as after a jump of voltage, the step is made
+    from the present position in several shares of the imbalance there.
+    """
 
-    def inverse(self, position: np.ndarray, before: np.ndarray | None = None) -> Inverse:
-        """Return the inverse of the iteration matrix about ``position``."""
-        return _inverse(self.structure, position, self.v_squared, self.dt,
-                        self.operator.resistance, self.damping, before)
+    def __init__(self, structure: Structure, motion: Motion, dt: float, v_squared: float,
+                 operator: Operator, damping: float = 0.0):
+        """Take what the structure remembers into account."""
+        self.structure = structure.during(motion, dt, v_squared)
+        self.motion, self.dt, self.v_squared, self.damping = motion, dt, v_squared, damping
+        self.operator, self.accuracy = operator, 0.0
+        self._inverse = None if self.structure.linear_range < np.inf else operator.inverse
+        self._exact, self._reached = False, None
 
-    def residual(self, position: np.ndarray) -> np.ndarray:
-        """Return the imbalance (m,) of the free degrees of freedom."""
-        velocity = self.motion.rate(position, self.dt)
-        return _imbalance(
-            self.structure.mass, velocity, self.motion.velocity, self.motion.velocity_before,
-            self.dt, self.damping, self.structure.internal_force(position, self.v_squared),
-            self.load(position, velocity)).reshape(-1)[self.structure.free]
+    def reach(self, load: Load, guess: np.ndarray, tolerance: float = 1.0e-10) -> np.ndarray:
+        """Return the position under ``load``; raise `Diverged` or `NotConverged`.
 
-    def by_chords(self, start: np.ndarray, inverse: Inverse | None) -> np.ndarray | None:
-        """Return the position after iterations with one inverse, or None if they are slow.
-
-        Without ``inverse`` it is made at ``start``.
+        The first iteration starts at ``guess``, or, where a structure has a short linear range,
+        at the present position; later loads start at what the one before reached.
         """
-        position, previous = np.array(start), np.inf
-        for _ in range(ITERATIONS):
-            try:
-                inverse = inverse or self.inverse(start, self.motion.position)
-                correction = inverse(self.residual(position))
-            except Diverged:
-                return None
-            size = np.abs(correction).max()
-            if not size <= max(previous / SHRINKAGE, self._accuracy):
-                return None
-            position.reshape(-1)[self.structure.free] -= correction
-            if size <= self._accuracy:
-                return position
-            previous = size
-        return None
+        present, self.accuracy = self.motion.position, tolerance * self.structure.chord
+        start = guess if self.structure.linear_range == np.inf else present
+        self._exact = False
+        try:
+            position = self._newton(load, start if self._reached is None else self._reached)
+        except RunFailed:
+            self._exact = True
+            position = march(lambda at, share: self._share(load, at, share), present,
+                             SMALLEST_SHARE)
+        self._reached = position
+        return position
 
-    def by_newton(self, start: np.ndarray, share: float) -> np.ndarray:
+    def end(self, position: np.ndarray) -> Motion:
+        """Return the motion that ends at ``position``; raise `Slack` if it has no tension."""
+        self.structure.require_taut(position, self.v_squared)
+        motion = self.motion
+        return Motion(position, motion.rate(position, self.dt), motion.position, motion.velocity,
+                      self.structure.after(motion, position, self.v_squared, self.dt))
+
+    def _residual(self, load: Load, position: np.ndarray) -> np.ndarray:
+        """Return the imbalance (m,) of the free degrees of freedom."""
+        motion, velocity = self.motion, self.motion.rate(position, self.dt)
+        return _imbalance(
+            self.structure.mass, velocity, motion.velocity, motion.velocity_before, self.dt,
+            self.damping, self.structure.internal_force(position, self.v_squared),
+            load(position, velocity)).reshape(-1)[self.structure.free]
+
+    def _inverted(self, position: np.ndarray, before: np.ndarray | None) -> Inverse:
+        """Return the inverse at ``position``; unless exact, with the operator's flow part."""
+        band = _band(self.structure, position, self.v_squared, self.dt, self.damping, before)
+        if self._exact:
+            return Inverse.of(band, self.operator.resistance, 1.5 / self.dt)
+        return self.operator.inverse.about(band)
+
+    def _share(self, load: Load, start: np.ndarray, share: float) -> np.ndarray:
         """Return the position where ``share`` of the imbalance of the present one is gone."""
-        held = (1.0 - share) * self.residual(self.motion.position) if share < 1.0 else 0.0
-        position, before, inverse, previous = start, None, self.inverse(start), np.inf
+        held = (1.0 - share) * self._residual(load, self.motion.position) if share < 1.0 else 0.0
+        self._inverse = None
+        return self._newton(load, start, held)
+
+    def _newton(self, load: Load, start: np.ndarray, held: float | np.ndarray = 0.0) -> np.ndarray:
+        """Return the position where the imbalance is ``held``."""
+        position, before, previous = start, None, np.inf
         for iteration in range(ITERATIONS):
             with np.errstate(invalid='ignore'):
-                residual = self.residual(position) - held
-            correction = inverse(residual)
-            size = np.abs(correction).max()
-            if size > max(previous / SHRINKAGE, self._accuracy):
-                inverse = self.inverse(position, before)
-                correction = inverse(residual)
-                size = np.abs(correction).max()
+                residual = self._residual(load, position) - held
+            correction, size = self._corrected(residual, position, before, previous)
             if not np.isfinite(size):
                 raise Diverged(f'structure: non-finite residual or correction in iteration '
                                f'{iteration}; check the load or reduce the time step',
                                self.motion)
             before, position = position, position.copy()
             position.reshape(-1)[self.structure.free] -= correction
-            if size <= self._accuracy:
+            if size <= self.accuracy:
                 return position
             previous = size
         self.structure.require_taut(position, self.v_squared)
         raise NotConverged(f'structure: largest correction {size / self.structure.chord:.3g} '
                            f'chords, residual {np.abs(residual).max():.3g} after {ITERATIONS} '
-                           f'iterations (tolerance {self.tolerance:.3g}); reduce the time step',
-                           self.motion)
+                           f'iterations (tolerance {self.accuracy / self.structure.chord:.3g}); '
+                           'reduce the time step', self.motion)
 
-    @property
-    def _accuracy(self) -> float:
-        return self.tolerance * self.structure.chord
+    def _corrected(self, residual: np.ndarray, position: np.ndarray, before: np.ndarray | None,
+                   previous: float) -> tuple[np.ndarray, float]:
+        """Return the correction and its size, with a new tangent if the last one is stale."""
+        moved = previous if before is not None else 0.0
+        if self._inverse is not None and moved <= self.structure.linear_range:
+            correction = self._inverse(residual)
+            size = np.abs(correction).max()
+            if size <= max(previous / SHRINKAGE, self.accuracy):
+                return correction, size
+        self._inverse = self._inverted(position, before)
+        correction = self._inverse(residual)
+        return correction, np.abs(correction).max()

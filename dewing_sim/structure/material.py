@@ -37,14 +37,14 @@ class Slopes(NamedTuple):
     yc: float
 
 
-@register_jitable
+@register_jitable(error_model='numpy')
 def energy(i1, j, y_squared, mu, jm, bulk, eps):
     """Return W."""
     room = 1.0 - (i1 * j ** (-2.0 / 3.0) - 3.0) / jm
     return -0.5 * mu * jm * np.log(room) + bulk * (j - 1.0) ** 2 - 0.5 * eps * y_squared / j
 
 
-@register_jitable
+@register_jitable(error_model='numpy')
 def gent(i1bar, mu, jm):
     """Return the first and second derivative of the Gent energy in I1bar."""
     room = jm - (i1bar - 3.0)
@@ -52,30 +52,31 @@ def gent(i1bar, mu, jm):
     return first, first / room
 
 
-@register_jitable
+@register_jitable(error_model='numpy')
 def slopes(i1, j, y_squared, mu, jm, bulk, eps):
     """Return the factors of the derivatives of W at I1, J and Y^2."""
-    scale = j ** (-2.0 / 3.0)
+    scale = np.exp(np.log(j) / -1.5)        # twice as fast as a power
     g1, g2 = gent(scale * i1, mu, jm)
-    h = scale * i1 / (1.5 * j)
-    electric = eps / (j * j)
+    specific = 1.0 / j
+    h = scale * i1 * specific / 1.5
+    electric = eps * specific * specific
     return Slopes(
         2.0 * scale * g1,
         2.0 * bulk * (j - 1.0) - h * g1 + 0.5 * electric * y_squared,
-        -eps / j,
+        -eps * specific,
         4.0 * scale * scale * g2,
-        -2.0 * scale * (h * g2 + g1 / (1.5 * j)),
-        h * h * g2 + h * g1 / (0.6 * j) + 2.0 * bulk - electric * y_squared / j,
+        -2.0 * scale * (h * g2 + g1 * specific / 1.5),
+        h * h * g2 + h * g1 * specific / 0.6 + 2.0 * bulk - electric * y_squared * specific,
         electric)
 
 
-@register_jitable
+@register_jitable(error_model='numpy')
 def stress(s, f, c, y):
     """Return dW/dx from f = d(I1)/dx / 2, c = dJ/dx, y = d(Y^2)/dx / 2."""
     return s.f * f + s.c * c + s.y * y
 
 
-@register_jitable
+@register_jitable(error_model='numpy')
 def modulus(s, f, c, y, f_other, c_other, y_other, f_both, c_both, y_both):
     """Return d2W/dx dx' from the derivatives by x, by x' and the second derivatives by both.
 

@@ -219,6 +219,11 @@ class Membrane(Taut):
         numbers[self.free] = np.arange(2 * self.elements - 2)
         return numbers.reshape(-1, 1, 2)
 
+    @property
+    def linear_range(self) -> float:
+        """Any length: one tangent serves for many steps."""
+        return math.inf
+
     def surface(self, nodal: np.ndarray) -> np.ndarray:
         """Return what the flow sees of nodal positions or velocities: all, (n+1, 2)."""
         return nodal

@@ -26,12 +26,21 @@ from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.pins import LOWER, MIDDLE, Springs, equations, mid_plane_weights
 from dewing_sim.structure.sheet import SI, Sheet
 from dewing_sim.structure.solid_element import BALANCED, LOCKED
-from dewing_sim.structure.strip import lengths, nodal_mass, straight_edges
+from dewing_sim.structure.strip import (
+    gather,
+    lengths,
+    mid_line,
+    nodal_mass,
+    straight_edges,
+    straighten,
+    to_nodes,
+)
 from dewing_sim.structure.taut import Taut
 
 HALF_BAND = 7               # couplings of a degree of freedom on either side
 EDGE_LENGTH = 2.0           # of the first element, in deformed thicknesses
 EDGE_LAYER = 6.0            # deformed thicknesses, in which the mid-plane leaves the pins
+LINEAR = 1.0e-4             # of the thickness
 FITS = 10                   # of the reference length
 
 
@@ -118,40 +127,36 @@ class Solid(Taut):
                         self.sheet.elastomer.bulk_modulus)
                 if self.support == MIDDLE else None)
 
+    @property
+    def linear_range(self) -> float:
+        """A small part of the thickness: turned by more, an element that keeps its volume fails.
+
+        Its old tangent would take the turn for a change of volume, against the bulk modulus.
+        """
+        return LINEAR * self.sheet.initial_thickness
+
     def surface(self, nodal: np.ndarray) -> np.ndarray:
         """Return what the flow sees of nodal positions or velocities, (n+1, 2).
 
         That is the mid-plane and, within a few thicknesses of edges pinned at their lower side,
         where the strip bends away from its line of tension, the straight line to the pins.
         """
-        line = self._mid_plane(nodal)
-        inner, left, right = self._edges
-        line[:inner] = left @ line[[0, inner]]
-        line[-inner:] = right @ line[[-1, -1 - inner]]
+        line = mid_line(nodal, self._share)
+        straighten(line, *self._edges)
         return line
 
     def spread(self, force: np.ndarray) -> np.ndarray:
         """Return the nodal forces of forces (n+1, 2) on the surface, its transpose."""
-        inner, left, right = self._edges
         force = force.copy()
-        ends = left.T @ force[:inner], right.T @ force[-inner:]
-        force[:inner], force[-inner:] = 0.0, 0.0
-        force[[0, inner]] += ends[0]
-        force[[-1, -1 - inner]] += ends[1]
-        return self._nodal(force)
-
-    def _mid_plane(self, nodal: np.ndarray) -> np.ndarray:
-        return np.einsum('ka,kai->ki', self._share, nodal.reshape(-1, 2, 2))
-
-    def _nodal(self, force: np.ndarray) -> np.ndarray:
-        return (self._share[:, :, None] * force[:, None, :]).reshape(-1, 2)
+        gather(force, *self._edges)
+        return to_nodes(force, self._share)
 
     @cached_property
     def _edges(self) -> tuple[int, np.ndarray, np.ndarray]:
         """Stations on the straight edges, and their weights of the pin and the end, (k, 2)."""
         thickness = self.sheet.initial_thickness / self.prestretch
         layer = EDGE_LAYER * thickness if self.support == LOWER else 0.0
-        return straight_edges(self._mid_plane(self.rest_position)[:, 0], layer)
+        return straight_edges(mid_line(self.rest_position, self._share)[:, 0], layer)
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return the response at ``position`` (2(n+1), 2) and V^2.
@@ -217,7 +222,7 @@ class Solid(Taut):
 
     def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
         """Return the nodal forces of a pressure jump on the mid-plane, scalar or (n,), to +y."""
-        return self._nodal(pressure_force(self._mid_plane(position), pressure))
+        return to_nodes(pressure_force(mid_line(position, self._share), pressure), self._share)
 
     def rest_tension(self, v_squared: float) -> float:
         """Return the tension of the flat unloaded sheet at the prestretch."""
@@ -254,7 +259,7 @@ class Solid(Taut):
 
 
 def _fitted(solid: Solid, density: float) -> Solid:
-    """Return a strip on lower pins whose interior rests at the prestretch, from one held in the middle."""
+    """Return a strip on lower pins, with the prestretch inside, from one held in the middle."""
     target = solid.rest_tension(0.0)
     slope = float(solid.sheet.respond([solid.prestretch], 0.0).stiffness[0]) * solid.prestretch
     hanging = _released(solid)

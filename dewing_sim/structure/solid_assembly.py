@@ -4,13 +4,13 @@
 
 import math
 
-import numba
 import numpy as np
 
 from dewing_sim.structure.material import energy
 from dewing_sim.structure.solid_element import (
     BALANCED,
     GAUSS,
+    KERNEL,
     NODES,
     condense,
     gradient,
@@ -24,7 +24,7 @@ from dewing_sim.structure.solid_element import (
 )
 
 
-@numba.njit(cache=True)
+@KERNEL
 def add_force(force, slope, k, length, height, lateral):
     """Add the gradient of the energy per unit span of element k to the nodal forces."""
     volume = length * height / lateral
@@ -36,27 +36,36 @@ def add_force(force, slope, k, length, height, lateral):
                 + NODES[2, node] * slope[4 + axis])
 
 
-@numba.njit(cache=True)
-def add_stiffness(band, curvature, k, length, height, lateral, equation):
-    """Add the Hessian of the energy per unit span of element k to a band (2 w + 1, m)."""
+@KERNEL
+def add_stiffness(band, curvature, k, length, height, lateral, equation, half):
+    """Add the Hessian of the energy per unit span of element k to a band (2 w + 1, m).
+
+    ``half`` (6, 8) is overwritten.
+    """
     volume = length * height / lateral
     width = band.shape[0] // 2
     scale = (1.0 / length, 1.0 / height, 1.0)
-    for i in range(8):
-        row = equation[4 * k + i]
-        for j in range(8):
-            column = equation[4 * k + j]
-            if row < 0 or column < 0:
+    for node in range(4):
+        m, n, g = NODES[0, node] * scale[0], NODES[1, node] * scale[1], NODES[2, node]
+        for row in range(6):
+            for axis in range(2):
+                half[row, 2 * node + axis] = volume * (
+                    m * curvature[row, axis] + n * curvature[row, 2 + axis]
+                    + g * curvature[row, 4 + axis])
+    for node in range(4):
+        m, n, g = NODES[0, node] * scale[0], NODES[1, node] * scale[1], NODES[2, node]
+        for axis in range(2):
+            row = equation[4 * k + 2 * node + axis]
+            if row < 0:
                 continue
-            value = 0.0
-            for a in range(3):
-                for b in range(3):
-                    value += (scale[a] * scale[b] * NODES[a, i // 2] * NODES[b, j // 2]
-                              * curvature[2 * a + i % 2, 2 * b + j % 2])
-            band[width + row - column, column] += volume * value
+            for j in range(8):
+                column = equation[4 * k + j]
+                if column >= 0:
+                    band[width + row - column, column] += (
+                        m * half[axis, j] + n * half[2 + axis, j] + g * half[4 + axis, j])
 
 
-@numba.njit(cache=True)
+@KERNEL
 def respond(position, length, height, lateral, field, mu, jm, bulk, eps):
     """Return nodal forces (2(n+1), 2), tension and thinning of elements (n,), status, element.
 
@@ -79,7 +88,7 @@ def respond(position, length, height, lateral, field, mu, jm, bulk, eps):
     return force, tension, thinning, BALANCED, -1
 
 
-@numba.njit(cache=True)
+@KERNEL
 def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equation, before,
               band):
     """Add the tangent to ``band`` (2 w + 1, m); return status and element.
@@ -87,7 +96,8 @@ def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equat
     ``equation`` (4 (n+1),) numbers the free coordinates and is negative at pins. ``before`` is
     the position from which Newton's last step came, or ``position`` for the exact tangent.
     """
-    inner, work = np.empty((7, 7)), np.zeros((18, 5))
+    inner, jacobian = np.empty((7, 7)), np.zeros((5, 6))
+    curvature, half = np.empty((6, 6)), np.empty((6, 8))
     for k in range(length.size):
         z = shape(position, k, length[k], height)
         strains = measures(z, length[k], height)
@@ -96,14 +106,14 @@ def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equat
             return status, k
         excess = second_order_area(z, shape(before, k, length[k], height))
         by = gradient(strains, a, b, lateral, field, mu, jm, bulk, eps)
-        hessian(strains, a, b, lateral, field, mu, jm, bulk, eps, excess, inner, work)
+        hessian(strains, a, b, lateral, field, mu, jm, bulk, eps, excess, inner)
         condense(inner)
-        curvature = shape_hessian(z, strains, by, inner, length[k], height)
-        add_stiffness(band, curvature, k, length[k], height, lateral, equation)
+        shape_hessian(z, strains, by, inner, length[k], height, jacobian, curvature)
+        add_stiffness(band, curvature, k, length[k], height, lateral, equation, half)
     return BALANCED, -1
 
 
-@numba.njit(cache=True)
+@KERNEL
 def energies(position, length, height, lateral, field, mu, jm, bulk, eps):
     """Return the elastic and the electrostatic energy eps J E^2 / 2 per unit span."""
     elastic, electric = 0.0, 0.0

@@ -26,6 +26,10 @@ import numpy as np
 
 from dewing_sim.structure.material import Slopes, modulus, slopes, stress
 
+# Sums may be reordered and divisions by zero need no check: twice as fast.
+_OPTIONS = {'cache': True, 'error_model': 'numpy', 'fastmath': {'contract', 'reassoc', 'arcp'}}
+KERNEL = numba.njit(**_OPTIONS)
+KERNEL_INSIDE = numba.njit(inline='always', **_OPTIONS)
 BALANCED, LOCKED, INVERTED, UNBALANCED = 0, 1, 2, 3
 GAUSS = math.sqrt(1.0 / 3.0)
 _CORRECTIONS = 25
@@ -34,7 +38,7 @@ _LAST_CORRECTION = 1.0e-6       # Newton's next would be about its square
 NODES = np.array([[-0.5, -0.5, 0.5, 0.5], [-0.5, 0.5, -0.5, 0.5], [0.5, -0.5, -0.5, 0.5]])
 
 
-@numba.njit(cache=True)
+@KERNEL
 def shape(position, k, length, height):
     """Return the vectors m, n, g of element k in an array (6,)."""
     z = np.zeros(6)
@@ -47,7 +51,7 @@ def shape(position, k, length, height):
     return z
 
 
-@numba.njit(cache=True)
+@KERNEL
 def measures(z, length, height):
     """Return A, B, D, p, q."""
     d = z[0] * z[3] - z[1] * z[2]
@@ -56,7 +60,7 @@ def measures(z, length, height):
             (z[0] * z[5] - z[1] * z[4]) / (d * height))
 
 
-@numba.njit(cache=True)
+@KERNEL
 def relax(strains, lateral, field, mu, jm, bulk, eps):
     """Return the enhanced strains a, b that minimise the energy, and a status.
 
@@ -77,9 +81,9 @@ def relax(strains, lateral, field, mu, jm, bulk, eps):
                 return a, b, INVERTED
             i1 = s1 * s1 * sa + s2 * s2 * sb + lateral * lateral
             j = lateral * s1 * s2 * sd
-            if not i1 * j ** (-2.0 / 3.0) - 3.0 < jm:
-                return a, b, LOCKED
             s = slopes(i1, j, electric * s1 * s1, mu, jm, bulk, eps)
+            if not s.f > 0.0:           # the Gent energy has no slope beyond its limit
+                return a, b, LOCKED
             f1, c1, y1 = s1 * sa, j / s1, s1 * electric
             f2, c2 = s2 * sb, j / s2
             ra += xi * stress(s, f1, c1, y1)
@@ -96,7 +100,7 @@ def relax(strains, lateral, field, mu, jm, bulk, eps):
     return a, b, UNBALANCED
 
 
-@numba.njit(cache=True)
+@KERNEL
 def second_order_area(z, before):
     """Return the part of D that a linear step from ``before`` to ``z``, both (6,), leaves out.
 
@@ -109,13 +113,13 @@ def second_order_area(z, before):
             - (z[1] - before[1]) * (z[2] - before[2]))
 
 
-@numba.njit(cache=True, inline='always')
+@KERNEL_INSIDE
 def _relieved(s, pressure):
     """Return slopes less a pressure, for second derivatives only."""
     return Slopes(s.f, s.c - pressure, s.y, s.ff, s.fc, s.cc, s.yc)
 
 
-@numba.njit(cache=True)
+@KERNEL
 def gradient(strains, a, b, lateral, field, mu, jm, bulk, eps):
     """Return the derivatives of the mean energy by A, B, D, p, q, where a and b are relaxed."""
     sa, sb, sd, p, q = strains
@@ -136,66 +140,73 @@ def gradient(strains, a, b, lateral, field, mu, jm, bulk, eps):
     return by_a, by_b, by_d, by_p, by_q
 
 
-@numba.njit(cache=True)
-def hessian(strains, a, b, lateral, field, mu, jm, bulk, eps, excess, result, work):
+@KERNEL
+def hessian(strains, a, b, lateral, field, mu, jm, bulk, eps, excess, result):
     """Fill ``result`` (7, 7) with the Hessian of the mean energy in A, B, D, p, q, a, b.
 
     It takes the pressure of the volume that D - ``excess`` makes: zero for the exact Hessian, see
-    `second_order_area` for Newton's method. ``work`` (18, 5) is zero or has served here before.
+    `second_order_area` for Newton's method.
     """
     sa, sb, sd, p, q = strains
     result[:] = 0.0
-    # Rows of first derivatives by s1, s2, A, B, D at a point, and of second ones.
-    f, c, y, f_both, c_both, y_both = (work[0], work[1], work[2], work[3:8], work[8:13],
-                                       work[13:18])
     squared = lateral * lateral * field
     for point in range(4):
         xi = GAUSS if point & 1 else -GAUSS
         eta = GAUSS if point & 2 else -GAUSS
         s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
         area = s1 * s2 * lateral
-        f[0], f[1], f[2], f[3] = s1 * sa, s2 * sb, 0.5 * s1 * s1, 0.5 * s2 * s2
-        c[0], c[1], c[4] = lateral * s2 * sd, lateral * s1 * sd, area
-        y[0], y[2] = squared * s1 * sa, 0.5 * squared * s1 * s1
-        f_both[0, 0], f_both[1, 1], f_both[0, 2], f_both[1, 3] = sa, sb, s1, s2
-        c_both[0, 1], c_both[0, 4], c_both[1, 4] = lateral * sd, lateral * s2, lateral * s1
-        y_both[0, 0], y_both[0, 2] = squared * sa, squared * s1
         s = slopes(s1 * s1 * sa + s2 * s2 * sb + lateral * lateral, area * sd,
                    squared * s1 * s1 * sa, mu, jm, bulk, eps)
         settled = _relieved(s, 2.0 * bulk * area * excess)
-        for i in range(5):
-            for k in range(i, 5):
-                value = 0.25 * modulus(settled, f[i], c[i], y[i], f[k], c[k], y[k],
-                                       f_both[i, k], c_both[i, k], y_both[i, k])
-                _spread(result, value, i, k, xi, eta)
+        _add_point(result, settled, s1, s2, sa, sb, sd, lateral, squared, xi, eta)
+    for row in range(7):
+        for column in range(row):
+            result[row, column] = result[column, row]
 
 
-@numba.njit(cache=True, inline='always')
-def _spread(result, value, i, k, xi, eta):
-    """Add a second derivative by s1, s2, A, B or D to those by A, B, D, p, q, a, b."""
-    row = 3 + i if i < 2 else i - 2
-    column = 3 + k if k < 2 else k - 2
-    share_row = (eta if i == 0 else xi) if i < 2 else 1.0
-    share_column = (eta if k == 0 else xi) if k < 2 else 1.0
-    _add(result, value * share_row * share_column, row, column)
-    if i < 2:
-        other_row = xi if i == 0 else eta
-        _add(result, value * other_row * share_column, row + 2, column)
-        if k < 2:
-            other_column = xi if k == 0 else eta
-            _add(result, value * other_row * other_column, row + 2, column + 2)
-            if i != k:
-                _add(result, value * share_row * other_column, row, column + 2)
+@KERNEL_INSIDE
+def _add_point(result, s, s1, s2, sa, sb, sd, lateral, squared, xi, eta):
+    """Add a quarter of the second derivatives at a point to the upper half of ``result``."""
+    f1, f2, fa, fb = s1 * sa, s2 * sb, 0.5 * s1 * s1, 0.5 * s2 * s2
+    c1, c2, cd = lateral * s2 * sd, lateral * s1 * sd, lateral * s1 * s2
+    y1, ya = squared * f1, squared * fa
+    by_a = (modulus(s, fa, 0.0, ya, fa, 0.0, ya, 0.0, 0.0, 0.0),
+            modulus(s, fa, 0.0, ya, fb, 0.0, 0.0, 0.0, 0.0, 0.0),
+            modulus(s, fa, 0.0, ya, 0.0, cd, 0.0, 0.0, 0.0, 0.0))
+    by_b = (modulus(s, fb, 0.0, 0.0, fb, 0.0, 0.0, 0.0, 0.0, 0.0),
+            modulus(s, fb, 0.0, 0.0, 0.0, cd, 0.0, 0.0, 0.0, 0.0))
+    by_1 = (modulus(s, fa, 0.0, ya, f1, c1, y1, s1, 0.0, squared * s1),
+            modulus(s, fb, 0.0, 0.0, f1, c1, y1, 0.0, 0.0, 0.0),
+            modulus(s, 0.0, cd, 0.0, f1, c1, y1, 0.0, lateral * s2, 0.0))
+    by_2 = (modulus(s, fa, 0.0, ya, f2, c2, 0.0, 0.0, 0.0, 0.0),
+            modulus(s, fb, 0.0, 0.0, f2, c2, 0.0, s2, 0.0, 0.0),
+            modulus(s, 0.0, cd, 0.0, f2, c2, 0.0, 0.0, lateral * s1, 0.0))
+    m11 = 0.25 * modulus(s, f1, c1, y1, f1, c1, y1, sa, 0.0, squared * sa)
+    m12 = 0.25 * modulus(s, f1, c1, y1, f2, c2, 0.0, 0.0, lateral * sd, 0.0)
+    m22 = 0.25 * modulus(s, f2, c2, 0.0, f2, c2, 0.0, sb, 0.0, 0.0)
+    for i in range(3):
+        result[0, i] += 0.25 * by_a[i]
+        # s1 moves with p by eta and with a by xi, s2 with q by xi and with b by eta.
+        result[i, 3] += 0.25 * eta * by_1[i]
+        result[i, 4] += 0.25 * xi * by_2[i]
+        result[i, 5] += 0.25 * xi * by_1[i]
+        result[i, 6] += 0.25 * eta * by_2[i]
+    result[1, 1] += 0.25 * by_b[0]
+    result[1, 2] += 0.25 * by_b[1]
+    result[2, 2] += 0.25 * modulus(s, 0.0, cd, 0.0, 0.0, cd, 0.0, 0.0, 0.0, 0.0)
+    result[3, 3] += eta * eta * m11
+    result[3, 4] += eta * xi * m12
+    result[3, 5] += eta * xi * m11
+    result[3, 6] += eta * eta * m12
+    result[4, 4] += xi * xi * m22
+    result[4, 5] += xi * xi * m12
+    result[4, 6] += xi * eta * m22
+    result[5, 5] += xi * xi * m11
+    result[5, 6] += xi * eta * m12
+    result[6, 6] += eta * eta * m22
 
 
-@numba.njit(cache=True, inline='always')
-def _add(result, value, row, column):
-    result[row, column] += value
-    if row != column:
-        result[column, row] += value
-
-
-@numba.njit(cache=True)
+@KERNEL
 def condense(curvature):
     """Remove the enhanced strains from the Hessian, in its leading (5, 5) part, in place."""
     haa, hab, hbb = curvature[5, 5], curvature[5, 6], curvature[6, 6]
@@ -207,7 +218,7 @@ def condense(curvature):
             curvature[i, k] -= ta * curvature[5, k] + tb * curvature[6, k]
 
 
-@numba.njit(cache=True)
+@KERNEL
 def shape_gradient(z, strains, by, length, height):
     """Return the gradient of the mean energy in m, n, g, (6,)."""
     _, _, sd, p, q = strains
@@ -223,47 +234,55 @@ def shape_gradient(z, strains, by, length, height):
     return result
 
 
-@numba.njit(cache=True)
-def _congruence(inner, slope):
-    """Return slope^T inner slope, (6, 6)."""
-    result = np.zeros((6, 6))
+@KERNEL
+def shape_hessian(z, strains, by, curvature, length, height, jacobian, result):
+    """Fill ``result`` (6, 6) with the Hessian of the mean energy in m, n, g.
+
+    ``curvature`` is condensed and is overwritten; ``jacobian`` (5, 6) is zero or has served here.
+    """
+    _, _, sd, p, q = strains
+    jacobian[0, 0], jacobian[0, 1] = 2.0 * z[0], 2.0 * z[1]
+    jacobian[1, 2], jacobian[1, 3] = 2.0 * z[2], 2.0 * z[3]
+    jacobian[2, 0], jacobian[2, 1], jacobian[2, 2], jacobian[2, 3] = z[3], -z[2], -z[1], z[0]
+    for i in range(6):
+        jacobian[3, i] = -p / sd * jacobian[2, i]
+        jacobian[4, i] = -q / sd * jacobian[2, i]
+    along, across = 1.0 / (sd * length), 1.0 / (sd * height)
+    jacobian[3, 2] -= along * z[5]
+    jacobian[3, 3] += along * z[4]
+    jacobian[3, 4] += along * z[3]
+    jacobian[3, 5] -= along * z[2]
+    jacobian[4, 0] += across * z[5]
+    jacobian[4, 1] -= across * z[4]
+    jacobian[4, 4] -= across * z[1]
+    jacobian[4, 5] += across * z[0]
+    for strain in range(3, 5):
+        curvature[strain, 2] -= by[strain] / sd
+        curvature[2, strain] -= by[strain] / sd
+    _congruence(curvature, jacobian, result)
+    by_d = by[2] - (by[3] * p + by[4] * q) / sd
+    for axis in range(2):
+        result[axis, axis] += 2.0 * by[0]
+        result[2 + axis, 2 + axis] += 2.0 * by[1]
+    # D = m x n, p D L = g x n and q D H = m x g.
+    for value, left, right in ((by_d, 0, 2), (by[3] * along, 4, 2), (by[4] * across, 0, 4)):
+        result[left, right + 1] += value
+        result[right + 1, left] += value
+        result[left + 1, right] -= value
+        result[right, left + 1] -= value
+
+
+@KERNEL
+def _congruence(inner, slope, result):
+    """Fill ``result`` (6, 6) with slope^T inner slope, of the leading (5, 5) part of ``inner``."""
+    result[:] = 0.0
     for i in range(5):
         for column in range(6):
             value = 0.0
             for k in range(5):
                 value += inner[i, k] * slope[k, column]
-            for row in range(6):
+            for row in range(column + 1):
                 result[row, column] += slope[i, row] * value
-    return result
-
-
-@numba.njit(cache=True)
-def shape_hessian(z, strains, by, curvature, length, height):
-    """Return the Hessian of the mean energy in m, n, g, (6, 6), ``curvature`` being condensed."""
-    _, _, sd, p, q = strains
-    jacobian = np.zeros((5, 6))
-    jacobian[0, 0], jacobian[0, 1] = 2.0 * z[0], 2.0 * z[1]
-    jacobian[1, 2], jacobian[1, 3] = 2.0 * z[2], 2.0 * z[3]
-    jacobian[2, 0], jacobian[2, 1], jacobian[2, 2], jacobian[2, 3] = z[3], -z[2], -z[1], z[0]
-    jacobian[3, 2], jacobian[3, 3], jacobian[3, 4], jacobian[3, 5] = -z[5], z[4], z[3], -z[2]
-    jacobian[4, 0], jacobian[4, 1], jacobian[4, 4], jacobian[4, 5] = z[5], -z[4], -z[1], z[0]
-    for i in range(6):
-        jacobian[3, i] = (jacobian[3, i] / length - p * jacobian[2, i]) / sd
-        jacobian[4, i] = (jacobian[4, i] / height - q * jacobian[2, i]) / sd
-    inner = curvature[:5, :5].copy()
-    for strain in range(3, 5):
-        inner[strain, 2] -= by[strain] / sd
-        inner[2, strain] -= by[strain] / sd
-    result = _congruence(inner, jacobian)
-    by_d = by[2] - (by[3] * p + by[4] * q) / sd
-    by_p, by_q = by[3] / (sd * length), by[4] / (sd * height)
-    for axis in range(2):
-        result[axis, axis] += 2.0 * by[0]
-        result[2 + axis, 2 + axis] += 2.0 * by[1]
-    # D = m x n, p D L = g x n and q D H = m x g.
-    for value, left, right in ((by_d, 0, 2), (by_p, 4, 2), (by_q, 0, 4)):
-        result[left, right + 1] += value
-        result[right + 1, left] += value
-        result[left + 1, right] -= value
-        result[right, left + 1] -= value
-    return result
+    for row in range(6):
+        for column in range(row):
+            result[row, column] = result[column, row]

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mesh of a strip along the chord: lengths, masses, and its edges as the flow sees them."""
 
+import numba
 import numpy as np
 
 from dewing_sim.structure.sheet import Sheet
@@ -38,3 +39,57 @@ def straight_edges(x: np.ndarray, layer: float) -> tuple[int, np.ndarray, np.nda
     inner = max(1, min(int(np.searchsorted(x, layer)), x.size // 2))
     left, right = x[:inner] / x[inner], (x[-1] - x[-inner:]) / (x[-1] - x[-1 - inner])
     return inner, np.stack([1.0 - left, left], axis=1), np.stack([1.0 - right, right], axis=1)
+
+
+@numba.njit(cache=True)
+def mid_line(nodal, share):
+    """Return the weighted means (n+1, 2) of bottom and top, ``nodal`` (2(n+1), 2)."""
+    line = np.empty((share.shape[0], 2))
+    for k in range(share.shape[0]):
+        for axis in range(2):
+            line[k, axis] = (share[k, 0] * nodal[2 * k, axis]
+                             + share[k, 1] * nodal[2 * k + 1, axis])
+    return line
+
+
+@numba.njit(cache=True)
+def to_nodes(force, share):
+    """Return the nodal forces (2(n+1), 2) of forces on the mean line, the transpose."""
+    nodal = np.empty((2 * share.shape[0], 2))
+    for k in range(share.shape[0]):
+        for axis in range(2):
+            nodal[2 * k, axis] = share[k, 0] * force[k, axis]
+            nodal[2 * k + 1, axis] = share[k, 1] * force[k, axis]
+    return nodal
+
+
+@numba.njit(cache=True)
+def straighten(line, inner, left, right):
+    """Put the first and last ``inner`` stations on the lines of `straight_edges`, in place."""
+    last = line.shape[0] - 1
+    first = last - inner + 1
+    for axis in range(2):
+        start, start_end = line[0, axis], line[inner, axis]
+        end, end_start = line[last, axis], line[last - inner, axis]
+        for k in range(inner):
+            line[k, axis] = left[k, 0] * start + left[k, 1] * start_end
+            line[first + k, axis] = right[k, 0] * end + right[k, 1] * end_start
+
+
+@numba.njit(cache=True)
+def gather(force, inner, left, right):
+    """Move forces from the first and last ``inner`` stations, in place: the transpose."""
+    last = force.shape[0] - 1
+    first = last - inner + 1
+    for axis in range(2):
+        start, start_end, end, end_start = 0.0, 0.0, 0.0, 0.0
+        for k in range(inner):
+            start += left[k, 0] * force[k, axis]
+            start_end += left[k, 1] * force[k, axis]
+            end += right[k, 0] * force[first + k, axis]
+            end_start += right[k, 1] * force[first + k, axis]
+            force[k, axis], force[first + k, axis] = 0.0, 0.0
+        force[0, axis] += start
+        force[inner, axis] += start_end
+        force[last, axis] += end
+        force[last - inner, axis] += end_start
