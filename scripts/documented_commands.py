@@ -23,7 +23,7 @@ PROJECT = Path(__file__).resolve().parents[1]
 PAGES = [PROJECT / 'README.md', PROJECT / 'CONTRIBUTING.md',
          *sorted((PROJECT / 'docs').glob('**/*.md'))]
 FENCE = re.compile(r'^( *)```(\w*)\n(.*?)^\1```$', re.M | re.S)
-PLACEHOLDER = re.compile(r'\b(COMMAND|DEG|FILE|FOLDER|KEY|KIND|NAME)\b|\[')
+PLACEHOLDER = re.compile(r'\b(COMMAND|DEG|FILE|FOLDER|KEY|KIND|NAME|STATE)\b|\[')
 
 # What the tests execute, with these options added: a later option replaces an earlier one.
 SHORT = {
@@ -42,7 +42,7 @@ LONG = (
     'make demo', 'python3 -m venv ~/dewing-env',
     "make test PYTEST_OPTIONS='test/test_examples.py'",
     'dewing material --case paper --out docs/images/material/paper --force',
-    '.venv/bin/dewing paper --out out/paper',
+    'dewing paper --out out/paper',
     'dewing_controller &', 'dask scheduler --port 8786 &',
 )
 # Commands within the text that `make long` executes, each in a folder of its own.
@@ -72,7 +72,10 @@ SYSTEM_ROS = ('source /opt/ros/jazzy/setup.bash', 'ros2 run dewing', 'ros2 launc
 
 
 class Block(NamedTuple):
-    """A fenced block of a page: its language and its lines, without their indentation."""
+    """A fenced block of a page: its language and its lines.
+
+    The lines are without their indentation and the path of the environment.
+    """
 
     page: str
     language: str
@@ -98,13 +101,15 @@ class Block(NamedTuple):
 def blocks(page: Path) -> list[Block]:
     """Return the fenced blocks of a page, in order."""
     name = str(page.relative_to(PROJECT))
-    return [Block(name, language, tuple(line[len(indent):] for line in body.splitlines()))
-            for indent, language, body in FENCE.findall(page.read_text(encoding='utf-8'))]
+    found = FENCE.findall(page.read_text(encoding='utf-8'))
+    return [Block(name, language, tuple(
+        line[len(indent):].replace('.venv/bin/', '') for line in body.splitlines()))
+        for indent, language, body in found]
 
 
 def words(line: str) -> list[str]:
-    """Return the words of a command, without its comment and the path of the environment."""
-    return [word.removeprefix('.venv/bin/') for word in shlex.split(line, comments=True)]
+    """Return the words of a command, without its comment."""
+    return shlex.split(line, comments=True)
 
 
 def commands_in_text(page: Path) -> list[str]:
