@@ -58,6 +58,11 @@ def numerics_field(option: str) -> Any:
     return Numerics.__dataclass_fields__[name]
 
 
+def engine_names() -> tuple[str, ...]:
+    """Return the engines themselves, without ``auto``."""
+    return tuple(name for name in numerics_field('engine').metadata['options'] if name != 'auto')
+
+
 def load_case(arguments: argparse.Namespace) -> Case:
     """Return the case with every option applied; raise `BadInput` for anything unusable."""
     changes = dict(map(parameters.parse_assignment, arguments.set))

@@ -30,6 +30,12 @@ def _tone(frequency: float) -> dict[str, Any]:
     return {**DISTURBANCES['fig5'], 'disturbance.frequency': frequency}
 
 
+def _gust(speed: float) -> dict[str, Any]:
+    """Return a vertical 1 - cos gust of 0.1 s, four chords long, near the end of a run."""
+    return {'numerics.engine': 'conformal', 'gust.shape': 'one_minus_cosine',
+            'gust.vertical': speed, 'gust.start': 0.22, 'gust.duration': 0.1}
+
+
 FIG5 = DISTURBANCES['fig5']
 SCENARIOS = {
     'fig5': Scenario('10 Hz disturbance, target 1.10 (paper, Fig. 5)', FIG5),
@@ -44,6 +50,8 @@ SCENARIOS = {
     'two_tone': Scenario('disturbance of 10 and 25 Hz, half each, told 10 Hz',
                          {'disturbance.pressure': 0.0075, 'disturbance.frequency': 10.0},
                          second=Disturbance(0.0075, 25.0)),
+    'gust_up': Scenario('vertical 1 - cos gust of 0.6 % U, target 1.10', _gust(0.007)),
+    'gust_down': Scenario('vertical 1 - cos gust of -1.6 % U, target 1.10', _gust(-0.02)),
     'noise': Scenario('Fig. 5 with sensor noise of 0.1 %', FIG5, noise=1.0e-3),
     'mismatch_chord': Scenario('Fig. 5, chord 10 % longer',
                                {**FIG5, 'membrane.chord': 0.033}),

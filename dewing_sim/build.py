@@ -44,15 +44,16 @@ def build_wing(case: Case, progress=None) -> Built:
     wing = Wing(case)
     rest = wing.rest(progress)
     identity = Identity.of('wing', wing, rest, case.actuation.voltage_limit**2,
-                           parameters.to_mapping(case), passive.camber(wing, rest, progress))
+                           parameters.to_mapping(wing.case),
+                           passive.camber(wing, rest, progress))
 
     def load(path: str) -> Any:
-        if checkpoint.load_case(path) != case:
+        if checkpoint.load_case(path) != wing.case:
             raise BadInput(f'{path}: the saved state belongs to another case')
         return checkpoint.load(path)
 
     return Built(wing, rest, identity,
-                 lambda path, state: checkpoint.save(path, state, case), load)
+                 lambda path, state: checkpoint.save(path, state, wing.case), load)
 
 
 def build_reduced(model: str) -> Built:

@@ -84,7 +84,8 @@ class Membrane:
 class Numerics:
     """How the equations are solved."""
 
-    engine: str = choice('flow solver', 'finite_volume', 'conformal')
+    engine: str = choice('flow solver; auto: conformal wherever it has been verified',
+                         'finite_volume', 'conformal', 'auto')
     grid: str = choice(
         'flow grid preset of the engine', 'fast', 'standard', 'fine', 'realtime', 'reference')
     time_step: float = real('s', 'time step dt', 1.0e-8, 1.0e-1)

@@ -12,6 +12,7 @@ import numpy as np
 
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Fluid, Loads, Wall
+from dewing_sim.fluid.choice import Demand, choose
 
 ADAPTATION_TIME = 10.0              # t* over which the far field learns the circulation
 ADAPTATION_RATE = 0.2               # per c/U
@@ -32,7 +33,8 @@ class Plate:
                  grid: str = 'standard', dt: float = 0.004, engine: str = 'finite_volume'):
         """Prepare the flow solver on a grid preset."""
         self.dt = dt
-        self.fluid: Fluid = engines.make(engine, grid, reynolds, alpha, dt)
+        self.engine = choose(engine, Demand(grid, camber, reynolds, alpha, dt))
+        self.fluid: Fluid = engines.make(self.engine, grid, reynolds, alpha, dt)
         x = self.fluid.columns
         self.wall = Wall(4.0 * camber * x * (1.0 - x), np.zeros(len(x) - 1))
         self.circulation = starting_circulation(alpha, camber)

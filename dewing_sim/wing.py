@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from dewing_sim import interface
+from dewing_sim import engine_choice, interface
 from dewing_sim.amplifier import Amplifier
 from dewing_sim.disturbance import wall_pressure
 from dewing_sim.encounter import Encounter
@@ -46,20 +46,21 @@ class Wing:
 
     def __init__(self, case: Case):
         """Prepare the solvers of ``case``."""
-        self.case = case
         self.dt = case.numerics.time_step
         self.scales = Scales.of(case.flow, case.membrane.chord)
         self.membrane = elements.make(case.membrane, self.scales)
         self.amplifier = Amplifier.of(case.actuation)
-        self.fluid = engines.make(case.numerics.engine, case.numerics.grid, self.scales.reynolds,
-                                  case.flow.angle_of_attack, self.dt / self.scales.time)
         self.encounter = Encounter.of(case.flow.angle_of_attack, case.gust, case.rigid_motion,
                                       self.scales)
         self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
             case.membrane.prestretch)
-        self._resistance = interface.nodal_resistance(self.fluid, self.membrane)
         _require_tension(case, math.sqrt(self.v_squared_slack))
-        _require_conformal(case, self.encounter)
+        self.case = engine_choice.settled(case, self.membrane, self.scales,
+                                          not self.encounter.is_steady)
+        self.fluid = engines.make(
+            self.case.numerics.engine, case.numerics.grid, self.scales.reynolds,
+            case.flow.angle_of_attack, self.dt / self.scales.time)
+        self._resistance = interface.nodal_resistance(self.fluid, self.membrane)
         self._operator = self.operator(damping=0.0)
 
     def rest(self, progress=None) -> State:
@@ -154,9 +155,3 @@ def _require_tension(case: Case, slack_voltage: float) -> None:
         if value >= slack_voltage:
             raise BadInput(f'actuation.{name} = {value:g} V is out of range: the membrane loses '
                            f'its tension at {slack_voltage:.4g} V')
-
-
-def _require_conformal(case: Case, encounter: Encounter) -> None:
-    if not encounter.is_steady and case.numerics.engine != 'conformal':
-        raise BadInput(f'numerics.engine = {case.numerics.engine!r} knows no gust nor '
-                       'rigid_motion: conformal does')

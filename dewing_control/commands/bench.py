@@ -22,12 +22,12 @@ ARRAYS_READ, ARRAYS_WRITTEN = 9, 5
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    engines = options.numerics_field('engine').metadata['options']
     parser.add_argument('--case', default='paper', help='case (default: paper)')
     parser.add_argument('--set', action='append', default=[], metavar='SECTION.KEY=VALUE',
                         help='change one parameter; may be repeated')
     parser.add_argument('--engine', default='finite_volume', metavar='NAME',
-                        help=f'flow solver: {", ".join(engines)} (default: finite_volume)')
+                        help=f'flow solver: {", ".join(options.engine_names())} '
+                             '(default: finite_volume)')
     parser.add_argument('--presets', nargs='+', metavar='NAME',
                         help='grid presets (default: all of the engine)')
     parser.add_argument('--steps', type=int, default=400, help='coupled steps (default: 400)')

@@ -3,9 +3,8 @@
 """Compare controllers on the same wing: accuracy, voltage, energy, computing time.
 
 Open loop, the PID with the paper's gains, the tuned PID, LQG, learnt feed-forward and MPC run
-through disturbances, targets in and out of reach, sensor noise and wings that differ from the
-nominal one. Energies and powers are per metre of span. Gusts are not among the scenarios because
-no engine offers them yet.
+through disturbances, gusts, targets in and out of reach, sensor noise and wings that differ from
+the nominal one. Energies and powers are per metre of span.
 """
 
 import argparse

@@ -108,7 +108,7 @@ def _metrics(arguments: argparse.Namespace, plate: Any, late: list, laps: Laps) 
         'strouhal': lines[0] if lines else None, 'lines': lines,
         'ms_per_step': 1.0e3 * laps.best(), 'threads': numba.get_num_threads(),
         'cells': plate.fluid.grid.cells, 'dt': plate.dt,
-        'engine': arguments.engine, 'grid': arguments.grid,
+        'engine': plate.engine, 'grid': arguments.grid,
     }
 
 

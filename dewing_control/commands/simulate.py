@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> None:
     from dewing_sim.history import Recorder
     with bar('preparing', 's', arguments.quiet) as show:
         loop = _prepare(case, arguments, settings, steps, show)
-    recorder, laps, state = Recorder(case, arguments.every), Laps(), None
+    recorder, laps, state = Recorder(loop.plant.case, arguments.every), Laps(), None
     try:
         with bar('simulating', 's', arguments.quiet) as show:
             for instant in until_interrupted(loop.steps):
@@ -146,7 +146,8 @@ def _metrics(arguments, case: Case, loop: Loop, history, laps: Laps) -> dict:
     late = history.since(start)
     mean, amplitude = relative(late.camber_mean, loop.rest.camber_mean)
     return {
-        'case': arguments.case, 'engine': case.numerics.engine, 'grid': case.numerics.grid,
+        'case': arguments.case, 'engine': loop.plant.case.numerics.engine,
+        'grid': case.numerics.grid,
         'dt': loop.plant.dt, 'steps': len(history), 'duration': end, 'averaged_from': start,
         **averages(late, loop.plant.reference_deflection),
         'camber_mean_relative': mean, 'camber_amplitude_relative': amplitude,

@@ -16,10 +16,9 @@ from dewing_sim.files import check_free
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument('--quick', action='store_true', help='only what takes about a minute')
-    known = options.numerics_field('engine').metadata['options']
     parser.add_argument('--engine', action='append', metavar='NAME',
-                        help=f'verify this flow solver: {", ".join(known)}; may be repeated '
-                             '(default: all)')
+                        help=f'verify this flow solver: {", ".join(options.engine_names())}; may '
+                             'be repeated (default: all)')
     parser.add_argument('--jobs', type=int, metavar='N',
                         help='processes at once (default: idle cores)')
     options.add_results(parser, 'folder of the page verification.md and its images')
