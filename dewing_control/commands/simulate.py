@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> None:
                 show(len(recorder), steps, outputs.time)
     finally:
         if len(recorder):
-            _keep(arguments.save_state, state, case)
+            _keep(arguments.save_state, state, loop.plant.case)
             _deliver(arguments, case, loop, recorder.history(), laps)
 
 
