@@ -75,6 +75,7 @@ class Conformal:
         self.columns = grid.columns
         self.geometry = Geometry(grid, dt)
         self.poisson = Poisson.of(grid)
+        self.line = self.poisson.line
         self.edges = EdgeTable(self.poisson, self.nu, dt)
         self.wall_pressure = WallPressure.of(grid, self.nu)
         self.resistance = self._flat_resistance()
@@ -169,10 +170,11 @@ class Conformal:
         q_hat = fft.rfft(q, axis=1)
         u_wall, v_wall = wall_fluxes
         psi_wall = self.poisson.wall_value(v_wall)
-        required = -fft.rfft(u_wall + 2.0 * around.map.scale * frame.node)
+        required = -self.line.modes(u_wall + 2.0 * around.map.scale * frame.node)
         influence = self.edges.near(around.map).influence
         for _ in range(SHEDDING_PASSES):
-            slip = fft.irfft(self.poisson.wall_slope(q_hat, psi_wall, circulation) - required)
+            slip = self.line.values(self.poisson.wall_slope(q_hat, psi_wall, circulation)
+                                    - required)
             if _fastest(slip) <= NEGLIGIBLE_SLIP:
                 break
             reach = influence.remove(slip, w)

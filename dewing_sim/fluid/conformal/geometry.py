@@ -54,10 +54,10 @@ class Geometry:
             if np.array_equal(before.shape, now.shape):
                 return self.at_rest(now)
         else:
-            m = self.mapping.follow(wall.height, now)
-        factors = np.array([3.0, -4.0, 1.0]) / (2.0 * self.dt)
-        scale = factors @ [m.scale, now.scale, before.scale]
-        shape = factors @ [m.shape, now.shape, before.shape]
+            near = Map(2.0 * now.shape - before.shape, 2.0 * now.edges - before.edges)
+            m = self.mapping.follow(wall.height, near)
+        scale, shape = ((3.0 * new - 4.0 * old + older) / (2.0 * self.dt) for new, old, older in (
+            (m.scale, now.scale, before.scale), (m.shape, now.shape, before.shape)))
         return self._around(m, *self.mapping.metric_and_flux(m, scale, shape))
 
     def at_rest(self, m: Map) -> Surroundings:
@@ -75,7 +75,7 @@ class Geometry:
 
     def _around(self, m: Map, h2: np.ndarray, grid_flux: np.ndarray | None) -> Surroundings:
         angles = self.mapping.angles(m)
-        return Surroundings(m, h2, grid_flux, self.mapping.wall(m)[1], angles,
+        return Surroundings(m, h2, grid_flux, self.mapping.slope(m), angles,
                             angles - self.grid.xi)
 
 

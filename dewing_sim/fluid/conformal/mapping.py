@@ -80,10 +80,13 @@ class Mapping:
 
     def wall(self, m: Map) -> tuple[np.ndarray, np.ndarray]:
         """Return z and z_zeta (n,) on the membrane."""
-        modes = np.array([m.shape, self._k * m.shape])
-        place, slope = fft.fft(modes * self._exp[0], len(self.grid.xi), axis=1)
-        cos, sin = self._axes[2:]
-        return 2.0 * m.scale * cos + place, 2.0j * m.scale * sin - slope
+        place = 2.0 * m.scale * self._axes[2] + _on_wall(m.shape, self._cos, self._sin)
+        return place, self.slope(m)
+
+    def slope(self, m: Map) -> np.ndarray:
+        """Return z_zeta (n,) on the membrane."""
+        series = _on_wall(self._k * m.shape, self._cos, self._sin)
+        return 2.0j * m.scale * self._axes[3] - series
 
     def angles(self, m: Map) -> np.ndarray:
         """Return theta (n,) of the nodes: x = (1 + cos theta) / 2, upper side below pi."""
@@ -133,6 +136,19 @@ def _metric_and_flux(slope, rate, scale, scale_rate, sinh, cosh, cos, sin):
             h2[j, i] = x * x + y * y
             flux[j, i] = complex(u * x + v * y, v * x - u * y)
     return h2, flux
+
+
+@kernel
+def _on_wall(modes, cos, sin):
+    """Return sum_k modes_k exp(-i k xi), (n,)."""
+    count, n = cos.shape
+    real, imag = np.zeros(n), np.zeros(n)
+    for k in range(count):
+        p, q = modes[k].real, modes[k].imag
+        for i in range(n):
+            real[i] += p * cos[k, i] + q * sin[k, i]
+            imag[i] += q * cos[k, i] - p * sin[k, i]
+    return real + 1j * imag
 
 
 @kernel

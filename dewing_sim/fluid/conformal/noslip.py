@@ -23,7 +23,7 @@ from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.kernels import kernel
 
-NEGLIGIBLE = 1.0e-13        # share of a wall vorticity beyond which its response is cut off
+NEGLIGIBLE = 1.0e-8         # share of a wall vorticity beyond which its response is cut off
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,10 @@ class Influence:
         h2 = _metric_of_arc(grid, trailing, leading)
         values, vectors = eigh(_diffusion(grid, 1.5 * h2[0] / dt, nu))
         decay = _responses(grid, values, 1.5 / dt * np.mean(h2 - h2[0], axis=1), nu)
-        reach = 1 + np.max(np.nonzero((decay > NEGLIGIBLE).any(axis=1))[0])
-        decay = decay[:reach]
-        active = (decay > NEGLIGIBLE).sum(axis=1)
+        decay[decay < NEGLIGIBLE] = 0.0
+        active = np.count_nonzero(decay, axis=1)
+        reach = np.count_nonzero(active)
+        decay, active = decay[:reach], active[:reach]
         matrix = np.zeros_like(vectors)
         for j in range(reach):
             vorticity = h2[j][:, None] * vectors * decay[j]

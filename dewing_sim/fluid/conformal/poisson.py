@@ -13,8 +13,8 @@ slope at infinity is Gamma / 2 pi, with Gamma the (clockwise) circulation of win
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
 
+from dewing_sim.fluid.conformal.fourier import Line
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.kernels import kernel
 
@@ -24,6 +24,7 @@ class Poisson:
     """Factors of the tridiagonal systems, one a mode, and what is derived from them."""
 
     grid: Grid
+    line: Line
     pivot: np.ndarray               # (rows, modes), row 0 unused
     ratio: np.ndarray               # (rows, modes)
     decay: np.ndarray               # (rows, modes) discrete exp(-k eta): 1 at the membrane
@@ -32,6 +33,7 @@ class Poisson:
     wall: np.ndarray                # (4,) weights of psi_0, slope_0, psi_1, psi_2 for face 0
     shift: np.ndarray               # (modes,) half a step in xi
     beyond: np.ndarray              # (modes,) from the last row to the boundary
+    integral: np.ndarray            # (modes,) 1 / (i k), 0 for mode 0 and the sawtooth
 
     @classmethod
     def of(cls, grid: Grid) -> 'Poisson':
@@ -44,21 +46,20 @@ class Poisson:
         shift = np.exp(0.5j * k * grid.step)
         shift[-1] = 0.0             # the shifted sawtooth vanishes on the nodes
         corner, wall = _interpolation(grid)
-        return cls(grid, pivot, ratio, decay, slope, corner, wall, shift, beyond)
+        integral = np.zeros(len(k), dtype=complex)
+        integral[1:-1] = 1.0 / (1j * k[1:-1])
+        return cls(grid, Line.of(len(grid.xi)), pivot, ratio, decay, slope, corner, wall, shift, beyond,
+                   integral)
 
     def wall_value(self, v_wall: np.ndarray) -> np.ndarray:
         """Return the modes of psi' at the membrane for the flux V (n,) through it."""
-        value = fft.rfft(v_wall)
-        value[1:-1] /= 1j * self.grid.wavenumbers[1:-1]
-        value[[0, -1]] = 0.0
-        return value
+        return self.line.modes(v_wall) * self.integral
 
     def wall_slope(self, q_hat: np.ndarray, psi_wall: np.ndarray, circulation: float,
                    ) -> np.ndarray:
         """Return d psi' / d eta (modes,) at the membrane without solving for psi."""
-        slope = self.slope * psi_wall
-        slope[0] += len(self.grid.xi) * circulation / (2.0 * np.pi)
-        return slope + _weighted_sum(self.decay, self.grid.width, q_hat)
+        outer = len(self.grid.xi) * circulation / (2.0 * np.pi)
+        return _wall_slope(self.slope, psi_wall, outer, self.decay, self.grid.width, q_hat)
 
     def solve(self, q_hat: np.ndarray, psi_wall: np.ndarray, circulation: float) -> np.ndarray:
         """Return the modes of psi' on the rows."""
@@ -107,9 +108,10 @@ def _interpolation(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 @kernel
-def _weighted_sum(decay, width, q_hat):
+def _wall_slope(slope, psi_wall, outer, decay, width, q_hat):
     rows, modes = decay.shape
-    total = np.zeros(modes, dtype=np.complex128)
+    total = slope * psi_wall
+    total[0] += outer
     for j in range(rows):
         for k in range(modes):
             total[k] += (decay[j, k] * width[j]) * q_hat[j, k]

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
+from dewing_sim.fluid.conformal.fourier import Line
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.kernels import kernel
 
@@ -25,6 +26,7 @@ from dewing_sim.fluid.kernels import kernel
 class WallPressure:
     """Quadrature of exp(-k eta) over the rows and the inverse of the wave number."""
 
+    line: Line
     weight: np.ndarray              # (rows, modes)
     inverse: np.ndarray             # (modes,) 1 / k, 0 for mode 0
     viscous: np.ndarray             # (modes,) i nu
@@ -40,20 +42,20 @@ class WallPressure:
         viscous = np.full(len(k), 1j * nu)
         viscous[0] = 0.0
         smooth = 1.0 - np.sin(0.5 * k * grid.step)**4
-        return cls(weight * smooth, inverse, viscous * smooth)
+        return cls(Line.of(len(grid.xi)), weight * smooth, inverse, viscous * smooth)
 
     def __call__(self, vorticity: np.ndarray, lamb: np.ndarray, acceleration: np.ndarray,
                  ) -> np.ndarray:
-        """Return P (n,) on the membrane less its mean; ``lamb`` (rows, n) is w (U - i V)."""
-        n = len(acceleration)
-        spectrum = fft.fft(lamb, axis=1)
-        head = (self.inverse * fft.rfft(acceleration) + self.viscous * fft.rfft(vorticity[0])
+        """Return P (n,) on the membrane less its mean; ``lamb`` (rows, n) is w (U - i V), lost."""
+        spectrum = fft.fft(lamb, axis=1, overwrite_x=True)
+        head = (self.inverse * self.line.modes(acceleration)
+                + self.viscous * self.line.modes(vorticity[0])
                 - _integral(self.weight, spectrum))
-        return fft.irfft(head, n)
+        return self.line.values(head)
 
     def added_mass(self, flux: np.ndarray) -> np.ndarray:
         """Return the change of P (n,) by a normal acceleration A (n,)."""
-        return fft.irfft(self.inverse * fft.rfft(flux), len(flux))
+        return self.line.values(self.inverse * self.line.modes(flux))
 
 
 @kernel
