@@ -22,7 +22,8 @@ from dewing_sim.structure.dynamics import Motion, Operator, Structure
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
 EXTRAPOLATION = ((1.0,), (2.0, -1.0), (3.0, -3.0, 1.0))     # from one, two or three past values
-FORESEEN = 1.0e-7   # chords; no need to foresee the shape better
+# Last corrections of the membrane in chords; what is left is smaller by another iteration's factor.
+FORESEEN, ACCURACY = 1.0e-5, 1.0e-8
 
 
 @dataclass(frozen=True)
@@ -58,22 +59,22 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     coasting = _coasting(fluid, structure, motion)
     step = dynamics.Step(structure, motion, dt, v_squared, operator, damping)
 
-    def moved_under(jump, velocity, guess, **accuracy):
+    def moved_under(jump, velocity, guess, accuracy):
         load = Load(fluid, structure, jump, velocity, wall_pressure, onset)
-        return step.reach(load, guess, **accuracy)
+        return step.reach(load, guess, accuracy)
 
     position = motion.predict(dt)
     if len(still_jumps):
         jump = np.dot(EXTRAPOLATION[len(still_jumps) - 1], still_jumps)
         try:
-            position = moved_under(jump, coasting, position, tolerance=FORESEEN)
+            position = moved_under(jump, coasting, position, FORESEEN)
         except RunFailed:
             pass                # only a guess: the passes will tell whether the step can be made
     wall = wall_of(fluid.columns, structure.surface(position),
                    structure.surface(motion.rate(position, dt)))
     for iteration in range(1, passes + 1):
         prediction = fluid.predict(flow, wall, onset)
-        position = moved_under(prediction.jump, wall.velocity, position)
+        position = moved_under(prediction.jump, wall.velocity, position, ACCURACY)
         before, wall = wall, wall_of(fluid.columns, structure.surface(position),
                                      structure.surface(motion.rate(position, dt)))
         residual = shape_change(wall.height, before.height)
@@ -123,12 +124,10 @@ class Load:
 
     def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return the nodal forces (nodes, 2) at these velocities."""
-        line = self.structure.surface(position)
-        change = column_velocity(self.fluid.columns, line,
-                                 self.structure.surface(velocity)) - self.velocity
-        jump = self.jump - self.fluid.resistance @ change
-        force = self.structure.spread(
-            nodal_force(self.fluid.columns, line, jump + self.wall_pressure))
+        force = self.structure.spread(_load(
+            self.fluid.columns, self.structure.surface(position),
+            self.structure.surface(velocity), self.jump, self.velocity, self.fluid.resistance,
+            self.wall_pressure))
         if self.onset is not None and self.onset.is_accelerated:
             force -= self.structure.mass[:, None] * self.onset.frame_acceleration(
                 position, velocity)
@@ -196,3 +195,10 @@ def nodal_force(columns, position, jump):
         else:
             column += 1
     return force
+
+
+@numba.njit(cache=True)
+def _load(columns, position, velocity, jump, reference, resistance, wall_pressure):
+    """Return the nodal forces of a jump that acts if the columns move with ``reference``."""
+    change = column_velocity(columns, position, velocity) - reference
+    return nodal_force(columns, position, jump - resistance @ change + wall_pressure)

@@ -80,23 +80,17 @@ def substitute_one(factors, right):
 
 
 @numba.njit(cache=True)
-def _correct(solution, basis, core, solved):
-    """Return solution - solved core basis^T solution, with basis and solved (m, k)."""
-    share = np.zeros(core.shape[0])
+def _solve(factors, basis, answer, vector):
+    """Return x - answer^T basis^T x, with the solution x (m,) of the band alone."""
+    solution = substitute_one(factors, vector)
+    share = np.zeros(answer.shape[0])
     for i in range(solution.size):
         for k in range(share.size):
             share[k] += basis[i, k] * solution[i]
-    weight = np.zeros(share.size)
-    for i in range(share.size):
-        for k in range(share.size):
-            weight[i] += core[i, k] * share[k]
-    result = solution.copy()
-    for i in range(solution.size):
-        value = 0.0
-        for k in range(weight.size):
-            value += solved[i, k] * weight[k]
-        result[i] -= value
-    return result
+    for k in range(share.size):
+        for i in range(solution.size):
+            solution[i] -= answer[k, i] * share[k]
+    return solution
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +112,7 @@ class Inverse:
 
     factors: np.ndarray
     basis: np.ndarray           # (m, k)
-    core: np.ndarray            # (k, k)
-    solved: np.ndarray          # (m, k), band^-1 basis
+    answer: np.ndarray          # (k, m), of the low rank to what basis^T sees
 
     @classmethod
     def of(cls, band: np.ndarray, low_rank: LowRank, factor: float) -> 'Inverse':
@@ -128,7 +121,8 @@ class Inverse:
         basis, weight = low_rank.basis, factor * low_rank.weight
         solved = substitute(factors, basis)
         core = np.eye(len(weight)) + weight @ (basis.T @ solved)
-        return cls(factors, basis, np.linalg.solve(core, weight), solved)
+        answer = solved @ np.linalg.solve(core, weight)
+        return cls(factors, basis, np.ascontiguousarray(answer.T))
 
     def about(self, band: np.ndarray) -> 'Inverse':
         """Return the inverse for another ``band`` with the correction for the low rank as here.
@@ -139,7 +133,4 @@ class Inverse:
 
     def __call__(self, vector: np.ndarray) -> np.ndarray:
         """Return the product with ``vector`` (m,)."""
-        solution = substitute_one(self.factors, vector)
-        if not len(self.core):
-            return solution
-        return _correct(solution, self.basis, self.core, self.solved)
+        return _solve(self.factors, self.basis, self.answer, vector)

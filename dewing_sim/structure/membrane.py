@@ -20,7 +20,7 @@ from dewing_sim.scales import Scales
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
 from dewing_sim.structure.motion import Motion
-from dewing_sim.structure.sheet import SI, Overstress, Response, Sheet
+from dewing_sim.structure.sheet import BALANCED, SI, Overstress, Response, Sheet, respond
 from dewing_sim.structure.taut import Taut
 from dewing_sim.structure.viscosity import Prony
 
@@ -50,6 +50,14 @@ def _assemble_force(edges, tension):
         force[k + 1, 0] += fx
         force[k + 1, 1] += fy
     return force
+
+
+@numba.njit(cache=True)
+def _internal_force(position, stretch_per_length, *constants):
+    """Return the gradient of the energy (n+1, 2) and whether the thicknesses balance."""
+    edges = _edges(position)
+    response, status, _ = respond(edges[2] * stretch_per_length, *constants)
+    return _assemble_force(edges, response[0]), status
 
 
 @numba.njit(cache=True)
@@ -150,10 +158,12 @@ class Membrane(Taut):
 
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the gradient (n+1, 2) of the potential energy in ``position`` (n+1, 2)."""
-        edges = _edges(position)
-        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared,
-                                      self.overstress)
-        return _assemble_force(edges, response.tension)
+        force, status = _internal_force(
+            position, self.stretch_per_length,
+            *self.sheet.constants(self.elements, v_squared, self.overstress))
+        if status != BALANCED:
+            self.respond(position, v_squared)       # raises and says where
+        return force
 
     def during(self, motion: Motion, dt: float, v_squared: float) -> 'Membrane':
         """Return the membrane with the overstress of the step that follows ``motion``."""

@@ -47,7 +47,7 @@ def kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps):
             i1 * j ** (-2.0 / 3.0))
 
 
-_BALANCED, _LOCKED, _PULLED_IN = 0, 1, 2
+BALANCED, _LOCKED, _PULLED_IN = 0, 1, 2
 
 
 @numba.njit(cache=True)
@@ -70,13 +70,13 @@ def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, mu, jm, bulk, 
         if abs(change) < 1.0e-8:
             slope = -0.5 * eps * l1 * l2 / l3 * (1.0 + c13 / c33)
             return (t1 + c13 * change, c11 - c13 * c13 / c33, slope, l3 * (1.0 + change),
-                    _BALANCED)
+                    BALANCED)
         l3 *= math.exp(min(max(change, -0.5), 0.5))
     return t1, c11, 0.0, l3, _PULLED_IN
 
 
 @numba.njit(cache=True)
-def _respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
+def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
     """Fill rows tension, its slopes in stretch and V^2, thickness; return status and element."""
     response = np.empty((4, stretch.size))
     field_squared = v_squared / thickness ** 2
@@ -86,7 +86,7 @@ def _respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
         tau, modulus, slope, l3, status = _balance_thickness(
             l1, lateral, volume / (l1 * lateral), field_squared, extra[0, k], extra[1, k],
             mu, jm, bulk, eps)
-        if status != _BALANCED:
+        if status != BALANCED:
             return response, status, k
         volume = l1 * lateral * l3
         scale = thickness / (l1 * lateral)
@@ -94,7 +94,7 @@ def _respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
         response[1, k] = scale * (modulus - tau) / l1
         response[2, k] = scale * slope / thickness ** 2
         response[3, k] = thickness * l3
-    return response, _BALANCED, -1
+    return response, BALANCED, -1
 
 
 class Response(NamedTuple):
@@ -149,16 +149,24 @@ class Sheet:
         Raises `BadInput` for a negative or non-finite V^2, `Diverged` beyond the Gent limit or
         where the field squeezes the thickness to nothing.
         """
-        if not 0.0 <= v_squared < math.inf:
-            raise BadInput(f'v_squared = {v_squared} V^2 is out of range: from 0 to infinity')
         stretch = np.asarray(stretch, dtype=float)
-        gain, held = overstress or (0.0, np.zeros((2, stretch.size)))
-        mu, *others = self.elastomer.constants
-        response, status, k = _respond(stretch, self.lateral_stretch, self.initial_thickness,
-                                       float(v_squared), held, (1.0 + gain) * mu, *others)
-        if status != _BALANCED:
+        response, status, k = respond(
+            stretch, *self.constants(stretch.size, v_squared, overstress))
+        if status != BALANCED:
             raise Diverged(self._describe_failure(status, k, stretch[k], v_squared))
         return Response(*response)
+
+    def constants(self, n: int, v_squared: float, overstress: Overstress | None = None) -> tuple:
+        """Return what the compiled `respond` takes after the stretches of ``n`` elements.
+
+        Raises `BadInput` for a negative or non-finite V^2.
+        """
+        if not 0.0 <= v_squared < math.inf:
+            raise BadInput(f'v_squared = {v_squared} V^2 is out of range: from 0 to infinity')
+        gain, held = overstress or (0.0, np.zeros((2, n)))
+        mu, *others = self.elastomer.constants
+        return (self.lateral_stretch, self.initial_thickness, float(v_squared), held,
+                (1.0 + gain) * mu, *others)
 
     def deviatoric_stress(self, stretch, thickness) -> np.ndarray:
         """Return the deviatoric second Piola-Kirchhoff stress of the Gent energy, (2, n).

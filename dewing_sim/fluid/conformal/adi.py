@@ -17,7 +17,7 @@ import numpy as np
 from dewing_sim.fluid.conformal.transport import UPWIND
 from dewing_sim.fluid.kernels import kernel
 
-LANES = 16
+LANES = 24
 SPLITTING = 0.5
 # The explicit fluxes are of fourth order, with a symbol up to 5/3 times the implicit one; with
 # this factor the mismatch is within 1/4 and extrapolation in time stays stable at any CFL number.

@@ -107,13 +107,22 @@ def _columns_to_nodes(values, angles):
 
 
 @kernel
-def _periodic(values, position):
-    """Interpolate cubically at ``position``, counted in nodes."""
-    n = values.size
+def _padded(values):
+    """Return one and a half periods of ``values``: no column moves by a quarter."""
+    quarter = values.size // 4
+    out = np.empty(6 * quarter)
+    for i in range(out.size):
+        out[i] = values[(i + 3 * quarter) % values.size]
+    return out
+
+
+@kernel
+def _at(padded, position):
+    """Interpolate cubically at ``position``, counted in nodes, see `_padded`."""
     first = int(np.floor(position))
     a, b, c, d = _weights(position - first)
-    return (a * values[(first - 1) % n] + b * values[first % n] + c * values[(first + 1) % n]
-            + d * values[(first + 2) % n])
+    at = first + padded.size // 6
+    return a * padded[at - 1] + b * padded[at] + c * padded[at + 1] + d * padded[at + 2]
 
 
 @kernel
@@ -122,11 +131,12 @@ def _nodes_to_columns(pressure, shift):
     columns = pressure.size // 2
     per_node = columns / np.pi
     jump = np.empty(columns)
+    shift, pressure = _padded(shift), _padded(pressure)
     for c in range(columns):
         above, below = columns - 1.0 - c, columns + 1.0 * c         # places on a flat plate
         upper, lower = above, below
         for _ in range(6):
-            upper = above - _periodic(shift, upper) * per_node
-            lower = below - _periodic(shift, lower) * per_node
-        jump[c] = _periodic(pressure, lower) - _periodic(pressure, upper)
+            upper = above - _at(shift, upper) * per_node
+            lower = below - _at(shift, lower) * per_node
+        jump[c] = _at(pressure, lower) - _at(pressure, upper)
     return jump

@@ -23,6 +23,7 @@ from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.kernels import kernel
 
+BLOCK = 4                   # modes added at once; divides the number of nodes
 NEGLIGIBLE = 1.0e-8         # share of a wall vorticity beyond which its response is cut off
 
 
@@ -110,7 +111,9 @@ def _add_response(modes, decay, active, coefficients, w):
     """Add the modes with a decay along eta; ascending eigenvalues reach less and less far."""
     rows, n = decay.shape
     for j in range(rows):
-        for m in range(active[j]):
-            factor = coefficients[m] * decay[j, m]
+        for m in range(0, active[j], BLOCK):        # beyond the active modes decay is zero
+            a, b = coefficients[m] * decay[j, m], coefficients[m + 1] * decay[j, m + 1]
+            c, d = coefficients[m + 2] * decay[j, m + 2], coefficients[m + 3] * decay[j, m + 3]
             for i in range(n):
-                w[j, i] += factor * modes[m, i]
+                w[j, i] += (a * modes[m, i] + b * modes[m + 1, i]
+                            + c * modes[m + 2, i] + d * modes[m + 3, i])
