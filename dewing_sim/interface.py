@@ -22,7 +22,7 @@ from dewing_sim.structure.dynamics import Motion, Operator, Structure
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
 EXTRAPOLATION = ((1.0,), (2.0, -1.0), (3.0, -3.0, 1.0))     # from one, two or three past values
-# Last corrections of the membrane in chords; what is left is smaller by another iteration's factor.
+# Last correction of the membrane in chords, for a guess and in a pass; the next is far smaller.
 FORESEEN, ACCURACY = 1.0e-5, 1.0e-8
 
 

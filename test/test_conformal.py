@@ -11,6 +11,7 @@ from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.conformal import adi
 from dewing_sim.fluid.conformal.engine import Conformal
+from dewing_sim.fluid.conformal.fourier import Line
 from dewing_sim.fluid.conformal.grid import PRESETS, Grid, Preset
 from dewing_sim.fluid.conformal.mapping import Mapping
 from dewing_sim.fluid.conformal.poisson import Poisson
@@ -59,6 +60,13 @@ def test_presets_reach_the_far_field_with_no_node_on_an_edge(name):
     assert grid.eta[0] == 0.0 and grid.eta[1] == pytest.approx(PRESETS[name].first)
     assert np.abs(np.sin(grid.xi)).min() > 0.4 * grid.step
     assert grid.columns[[0, -1]] == pytest.approx([0.0, 1.0], abs=1.0e-15)
+
+
+def test_transforms_of_a_line_are_those_of_the_library():
+    values = np.random.default_rng(4).normal(size=24)
+    modes = fft.rfft(values)
+    assert Line.of(24).modes(values) == pytest.approx(modes, abs=1.0e-13)
+    assert Line.of(24).values(modes + 1j * np.eye(13)[0]) == pytest.approx(values, abs=1.0e-13)
 
 
 def stream_error(rows: int, first: float, k: int = 3) -> float:

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 @dataclass(frozen=True)
 class Preset:
-    """Points around the wing (a multiple of 4), rows, first step of eta at the membrane, outermost eta."""
+    """Points around the wing (a multiple of 4), rows, first step of eta, outermost eta."""
 
     around: int
     rows: int

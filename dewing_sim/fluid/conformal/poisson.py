@@ -48,8 +48,8 @@ class Poisson:
         corner, wall = _interpolation(grid)
         integral = np.zeros(len(k), dtype=complex)
         integral[1:-1] = 1.0 / (1j * k[1:-1])
-        return cls(grid, Line.of(len(grid.xi)), pivot, ratio, decay, slope, corner, wall, shift, beyond,
-                   integral)
+        return cls(grid, Line.of(len(grid.xi)), pivot, ratio, decay, slope, corner, wall, shift,
+                   beyond, integral)
 
     def wall_value(self, v_wall: np.ndarray) -> np.ndarray:
         """Return the modes of psi' at the membrane for the flux V (n,) through it."""
