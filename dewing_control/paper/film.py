@@ -39,11 +39,16 @@ class Film:
         shown = list(self._pictures(wing, tick))
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / 'film.gif'
-            flow_figure.animate(shown, path)
+            flow_figure.animate(self._drawn(shown, tick), path)
             film = path.read_bytes()
         still = flow_figure.png(flow_figure.figure(shown[0]))
         return Result({'frames': self.frames, 'exaggeration': self.exaggeration},
                       {'still': _bytes(still), 'film': _bytes(film)})
+
+    def _drawn(self, shown: list[Any], tick: Tick) -> Iterator[Any]:
+        for frame, picture in enumerate(shown):
+            tick(0.8 + 0.2 * frame / self.frames)
+            yield picture
 
     def _pictures(self, wing: Wing, tick: Tick) -> Iterator[Any]:
         state = trimmed(wing, tick, 0.4)

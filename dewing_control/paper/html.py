@@ -14,13 +14,14 @@ from dewing_control.paper.sections import PAPER
 CITATION = ('S. Buoso and R. Palacios, <i>Reduced-order modelling and feedback control of '
             'integrally actuated membrane wings</i>, IFASD-2015-072')
 COLUMNS = ('quantity', 'paper', 'ours', '± mean', '± numerics', 'difference', 'explanation')
+SMALLEST = 1.0e-4           # error worth stating
 QUICK = ('Quick version: coarse grids, short starts and short averages. Its numbers show that '
          'everything runs; quote those of the full version.')
 
 
 def page(plan: Plan, sections: list[Section], record: dict[str, Any]) -> str:
     """Return the report."""
-    body = [_head(plan, record), _contents(sections), _table_of_rows(sections)]
+    body = [_head(plan, sections, record), _contents(sections), _table_of_rows(sections)]
     for number, section in enumerate(sections, 1):
         if number == len(PAPER) + 1:
             body.append('<h2 class="part">Beyond the paper</h2>')
@@ -36,7 +37,7 @@ def _text(value: str) -> str:
     return html.escape(value, quote=False)
 
 
-def _head(plan: Plan, record: dict[str, Any]) -> str:
+def _head(plan: Plan, sections: list[Section], record: dict[str, Any]) -> str:
     engine = plan.engine.replace('_', '-')
     notes = [f'<p class="quick">{QUICK}</p>'] if plan.quick else []
     notes += [f'<p class="failed">The run {_text(name)} failed: {_text(reason)}</p>'
@@ -47,7 +48,13 @@ def _head(plan: Plan, record: dict[str, Any]) -> str:
             'to the closed loop, and what the paper leaves open.</p>'
             f'<p class="facts">Engine {engine} on grid {plan.extent.grids[plan.engine]}; '
             f'{plan.other.replace("_", "-")} on {plan.extent.grids[plan.other]} beside it. '
-            f'{len(plan.runs)} runs.</p>{"".join(notes)}</header>\n')
+            f'{len(plan.runs)} runs.</p>{"".join(notes)}{_film(sections)}</header>\n')
+
+
+def _film(sections: list[Section]) -> str:
+    """Return the film of the flow, with which the page opens."""
+    return ''.join(_figure(figure) for section in sections for figure in section.figures
+                   if figure.kind == 'gif')
 
 
 def _contents(sections: list[Section]) -> str:
@@ -81,6 +88,8 @@ def _row(row: Row) -> str:
 def _number(value: float | None, unit: str, digits: int = 4) -> str:
     if value is None or (digits == 2 and abs(value) < 1.0e-12):
         return '–'
+    if digits == 2 and abs(value) < SMALLEST:
+        return f'&lt; {SMALLEST:g}'
     return f'{value:.{digits}g}'.replace('-', '−') + unit
 
 
@@ -98,7 +107,7 @@ def _difference(row: Row) -> str:
 def _section(number: int, section: Section) -> str:
     parts = [f'<h2><span class="number">{number}</span>{_text(section.title)}</h2>']
     parts += [f'<p>{_text(text)}</p>' for text in section.text]
-    parts += [_figure(figure) for figure in section.figures]
+    parts += [_figure(figure) for figure in section.figures if figure.kind != 'gif']
     parts += [_table(table) for table in section.tables]
     if section.series:
         files = ', '.join(f'<code>csv/{_text(name)}.csv</code>' for name in _files(section))

@@ -33,7 +33,8 @@ def section(plan: Plan, found: Found) -> Section:
             target = result.values['target']
             axis.semilogy(1.0e3 * result['time'],
                           100.0 * np.maximum(np.abs(result['camber'] - target), 1.0e-8),
-                          color=drawing.COLOURS[number], lw=0.8, label=WORDS[name])
+                          drawing.STYLES[number], color=drawing.COLOURS[number], lw=1.0,
+                          label=WORDS[name])
             rows.append(_row(scenario, name, result.values))
             columns |= {'t [s]': result['time'], f'camber, {name} [passive]': result['camber'],
                         f'V, {name} [V]': np.sqrt(result['v_squared'])}

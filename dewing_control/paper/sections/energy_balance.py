@@ -16,7 +16,7 @@ def section(plan: Plan, found: Found) -> Section:
     drag = float(flight['cd'].mean()) * case.flow.dynamic_pressure * case.membrane.chord * (
         case.flow.speed)
     names = [name for name in plan.runs if name.startswith(tuple(plan.extent.scenarios))
-             and name in found]
+             and name in found and not name.endswith('open_loop')]
     rows = [_row(name, found[name].values) for name in names]
     main = found['fig5/pid_tuned'].values
     text = [

@@ -98,7 +98,8 @@ def _table(opened, closed) -> Table:
         voltage = np.sqrt(result['v_squared'][-round(
             result.values['averaged'] / result.values['dt']):])
         rows.append((label, f'{mean:+.3f} %', f'{amplitude:.3f} %', f'{voltage.min():.0f}',
-                     f'{voltage.max():.0f}', f'{100.0 * result.values["saturation_share"]:.0f} %',
+                     f'{voltage.max():.0f}', '-' if label == 'open loop' else
+                     f'{100.0 * result.values["saturation_share"]:.0f} %',
                      f'{result.values["cl_mean"]:.5f}'))
     return Table('The last periods', ('loop', 'mean camber', 'amplitude', 'least V', 'largest V',
                                       'V² at a bound', 'mean Cl'), rows)

@@ -18,6 +18,7 @@ ORDERS = (2, 4, 6, 8, 10, 12, 14)
 DRAWN = (2, 6, 10, 14)
 WINDOWS = (1.2, 3.6, 9.6)               # c/U: the paper's, and longer ones
 OUTPUTS = ('camber_mean', 'cl')
+WORST = -100.0                          # percent: fits below it are not told apart
 
 
 def section(plan: Plan, found: Found) -> Section:
@@ -61,8 +62,12 @@ def _models(records: dict, identity, length: float) -> dict[int, Model]:
 def _fits(record, model: Model) -> dict[str, float]:
     with np.errstate(over='ignore', invalid='ignore'):
         fits = nrmse_fit(record.y, model.simulate(record.u))
-    return {name: float(max(fit, -999.0)) if np.isfinite(fit) else -999.0
+    return {name: float(max(fit, WORST)) if np.isfinite(fit) else WORST
             for name, fit in zip(record.names, fits)}
+
+
+def _percent(fit: float) -> str:
+    return f'{fit:.1f}' if fit > WORST else f'< {WORST:.0f}'
 
 
 def _table(records: dict, models: dict, length: float, identity) -> Table:
@@ -73,8 +78,8 @@ def _table(records: dict, models: dict, length: float, identity) -> Table:
         fits, fresh = _fits(head, model), _fits(records[FRESH], model)
         frequency, damping = model.modes()
         main = np.argmin(np.abs(frequency - 72.4)) if len(frequency) else None
-        rows.append((str(order), *(f'{fits[name]:.1f}' for name in OUTPUTS),
-                     *(f'{fresh[name]:.1f}' for name in OUTPUTS),
+        rows.append((str(order), *(_percent(fits[name]) for name in OUTPUTS),
+                     *(_percent(fresh[name]) for name in OUTPUTS),
                      '-' if main is None else f'{frequency[main]:.1f}',
                      '-' if main is None else f'{damping[main]:.4f}',
                      f'{model.spectral_radius:.5f}'))

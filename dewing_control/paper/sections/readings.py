@@ -19,8 +19,7 @@ def section(plan: Plan, found: Found) -> Section:
         'Gains. Ki = 2.3e15 V²/s, Kp = 4.0e11 V² and Kd = 7.5e5 V² s cannot act on an error in '
         'the lift coefficient: 10 % of Cl = 0.396 times Kp is 1.6e10 V², ten thousand times V_L². '
         'They have the size of V² per metre of camber, and were tried so on model and wing.',
-        'Error signal. The maximum camber is not collocated with V², and its place moves. Feeding '
-        'it back leaves more than feeding back the mean.'])
+        _error_signal(found)])
     mean, amplitude = percent(found['printed/open_loop'])
     made.rows = [
         Row('Disturbance as printed (P = 3 % of q): mean of the camber', -5.0, mean, '%', None,
@@ -30,6 +29,15 @@ def section(plan: Plan, found: Found) -> Section:
     made.tables = [_disturbances(found), _gains(found)]
     made.figures.append(_figure(found, made))
     return made
+
+
+def _error_signal(found: Found) -> str:
+    mean, largest = found['fig5/pid_tuned'], found['largest/pid_tuned']
+    outcome = (f'ends the run after {1.0e3 * largest["time"][-1]:.0f} ms'
+               if largest.values['failure'] else f'leaves ± {percent(largest)[1]:.2g} %')
+    return ('Error signal. The maximum camber is not collocated with V², and its place moves: '
+            f'with the gains that leave ± {percent(mean)[1]:.2g} % of the mean camber, feeding '
+            f'the maximum back {outcome}.')
 
 
 def _gain_row(found: Found) -> Row:

@@ -97,6 +97,8 @@ def _table(degrees: float, measured: dict) -> Table:
 
 
 def _cell(value: tuple[float, float]) -> str:
+    if not value[0]:
+        return '-'
     if value[1] < 5.0e-5:
         return f'{value[0]:.4g}'
     return f'{value[0]:.4g} ± {value[1]:.1g}'

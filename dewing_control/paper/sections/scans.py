@@ -48,8 +48,11 @@ def _measure(found: Found, scan: Scan) -> dict[str, float]:
 
 
 def _marked(name: str, value: float) -> str:
-    near = math.isclose(value, FACTS[name], rel_tol=TOLERANCES[name])
-    return f'{value:.4g}{" *" if near else ""}'
+    return f'{value:.4g}{" *" if _near(name, value) else ""}'
+
+
+def _near(name: str, value: float) -> bool:
+    return math.isclose(value, FACTS[name], rel_tol=TOLERANCES[name])
 
 
 def _text(measured: dict[Scan, dict[str, float]]) -> list[str]:
@@ -62,9 +65,20 @@ def _text(measured: dict[Scan, dict[str, float]]) -> list[str]:
         'need 0.5 mm. The last column is a closed form, V_L sqrt(0.1/1.1).',
         'All of these runs are on the coarse grid of the conformal engine, with the same time '
         'step in c/U, so that differences between them are those of the choice.',
-        f'26 Hz asks for a chord near 30 mm. The mean lift at 8 degrees lies between '
-        f'{min(lifts):.3f} and {max(lifts):.3f} and the maximum between x/c = {min(places):.2f} '
-        f'and {max(places):.2f} whatever the choice: neither 0.83 nor 0.31 can be met.']
+        f'The mean lift at 8 degrees lies between {min(lifts):.3f} and {max(lifts):.3f} and the '
+        f'maximum between x/c = {min(places):.2f} and {max(places):.2f}, whatever the choice. '
+        + _met(measured)]
+
+
+def _met(measured: dict[Scan, dict[str, float]]) -> str:
+    """Say which facts no choice meets, and which chords have the shedding frequency."""
+    never = [name for name in FACTS if not any(_near(name, values[name])
+                                               for values in measured.values())]
+    chords = sorted({f'{1.0e3 * scan.chord:g}' for scan, values in measured.items()
+                     if _near('shedding [Hz]', values['shedding [Hz]'])})
+    sentence = f'Met by no choice: {"; ".join(never)}. ' if never else ''
+    return sentence + (f'The shedding frequency asks for a chord of {", ".join(chords)} mm.'
+                       if chords else 'No chord has the shedding frequency.')
 
 
 def _figure(measured: dict[Scan, dict[str, float]]) -> Figure:
