@@ -200,7 +200,9 @@ def drawn() -> tuple[plan.Plan, dict, list[Section], dict]:
     results['experiments'] = excited(made)
     results['design'] = made.runs['design'](lambda share: None, results)
     picture = np.frombuffer(b'picture', np.uint8)
-    results['film'] = Result({'exaggeration': 20.0}, {'still': picture, 'film': picture})
+    for engine in plan.ENGINES:
+        results[f'film {engine}'] = Result({'exaggeration': 20.0},
+                                           {'still': picture, 'film': picture})
     results['shed other'] = Failure('the flow <diverged>')
     found = sections.make(made, Found(results))
     return made, results, found, record.metrics(made, found, results, 1.0)

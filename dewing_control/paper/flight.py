@@ -20,7 +20,7 @@ from dewing_sim.scales import Scales
 from dewing_sim.wing import Wing
 
 KEPT = ('time', 'v_squared', 'cl', 'cd', 'camber_mean', 'camber_max', 'camber_max_position',
-        'tension', 'shape_time', 'x', 'y', 'pressure_jump')
+        'tension', 'shape_time', 'x', 'y')
 
 MILLISECONDS = {                    # expected, of a coupled step
     'finite_volume': {'fast': 0.6, 'standard': 1.0, 'fine': 4.0},

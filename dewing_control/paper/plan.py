@@ -135,7 +135,8 @@ def make(engine: str, quick: bool, extent: Extent | None = None) -> Plan:
     runs['experiments'] = Experiments(case, _yaml('sysid', CHANGES))
     runs['design'] = Designed('experiments', _settings({}), extent.tuning)
     runs |= _loops(engine, extent) | _shedding_control(engine, extent)
-    runs['film'] = Film(_case('paper_alpha8', engine, extent), FILM, extent.frames)
+    for name, frames in (('conformal', extent.frames), ('finite_volume', 1)):
+        runs[f'film {name}'] = Film(_case('paper_alpha8', name, extent), FILM, frames)
     return Plan(quick, engine, extent, runs, variants, scans)
 
 
