@@ -11,7 +11,7 @@ from scipy.linalg import eigh, solve_banded
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged, Slack
 from dewing_sim.scales import Scales
-from dewing_sim.structure import elements, solid_assembly
+from dewing_sim.structure import elements, solid_assembly, solid_shape
 from dewing_sim.structure import solid_element as element
 from dewing_sim.structure.band import full
 from dewing_sim.structure.material import Elastomer
@@ -44,10 +44,10 @@ def distorted(solid, size=0.08, seed=3):
 def gradients(solid, position, k):
     """Return F at the integration points of element k, and the shares of xi and eta."""
     length, height = solid.length[k], solid.sheet.initial_thickness
-    z = element.shape(position, k, length, height)
-    strains = element.measures(z, length, height)
+    z = solid_shape.shape(position, k, length, height)
+    strains = solid_shape.measures(z, length, height)
     field = 0.0
-    a, b, status = element.relax(strains, solid.sheet.lateral_stretch, field,
+    a, b, status = element.relax(strains, np.zeros((3, 4)), 0, solid.sheet.lateral_stretch, field,
                                  *solid.sheet.elastomer.constants)
     assert status == element.BALANCED
     result = []
@@ -92,7 +92,7 @@ def test_the_plane_strain_hexahedron_is_the_quadrilateral_times_the_span():
     corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
     reference = np.array([(x * length, y * height, z * width) for x, y, z in corners])
     nodes = np.array([(*quad[2 * x + y], z * width * lateral) for x, y, z in corners])
-    vectors = element.shape(quad, 0, length, height)
+    vectors = solid_shape.shape(quad, 0, length, height)
     for xi, eta, zeta in rng.uniform(-1.0, 1.0, (5, 3)):
         gradient = hexahedron_gradient(nodes, reference, xi, eta, zeta)
         expected = np.diag([0.0, 0.0, lateral])
@@ -153,7 +153,8 @@ def patch(lengths, gradient):
     """Return forces of elements under a uniform in-plane deformation gradient."""
     x = np.repeat(np.concatenate([[0.0], np.cumsum(lengths)]), 2)
     reference = np.stack([x, np.tile([0.0, 5.0e-5], lengths.size + 1)], axis=1)
-    result = solid_assembly.respond(reference @ gradient.T, lengths, 5.0e-5, 1.0, 0.0,
+    held = np.zeros((3, 4 * lengths.size))
+    result = solid_assembly.respond(reference @ gradient.T, held, lengths, 5.0e-5, 1.0, 0.0,
                                     *SHEET.elastomer.constants)
     assert result[3] == element.BALANCED
     return result[0]
@@ -180,7 +181,7 @@ def linear_cantilever(slenderness, n):
     position = np.stack([x, np.tile([-0.5 * height, 0.5 * height], n + 1)], axis=1)
     equation = np.arange(4 * (n + 1)) - 4
     band = np.zeros((15, 4 * n))
-    assert solid_assembly.stiffness(position, lengths, height, 1.0, 0.0,
+    assert solid_assembly.stiffness(position, np.zeros((3, 4 * n)), lengths, height, 1.0, 0.0,
                                     *SHEET.elastomer.constants, equation, position,
                                     band)[0] == element.BALANCED
     load = np.zeros(4 * n)
@@ -204,7 +205,7 @@ def test_every_deformation_of_an_element_costs_energy():
         length = 5.0e-5 * aspect
         position = np.array([[0.0, 0.0], [0.0, 5.0e-5], [length, 0.0], [length, 5.0e-5]])
         band = np.zeros((15, 8))
-        solid_assembly.stiffness(position, np.array([length]), 5.0e-5, 1.0, 0.0,
+        solid_assembly.stiffness(position, np.zeros((3, 4)), np.array([length]), 5.0e-5, 1.0, 0.0,
                                  *SHEET.elastomer.constants, np.arange(8), position,
                                  band)
         values = np.linalg.eigvalsh(full(band)) / SHEET.elastomer.shear_modulus

@@ -8,6 +8,7 @@ import pytest
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.structure import elements
+from dewing_sim.structure.band import full
 from dewing_sim.structure.dynamics import Operator, advance
 from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.viscosity import Prony
@@ -95,9 +96,63 @@ def test_a_restart_continues_bit_for_bit():
         assert np.array_equal(array, getattr(resumed, name)), name
 
 
-def test_solid_elements_refuse_a_viscous_branch():
-    with pytest.raises(BadInput, match='membrane.viscous_share = 0.5'):
-        elements.make(parameters.replace(SECTION, {'element': 'solid'}))
+SOLID = elements.make(parameters.replace(SECTION, {'element': 'solid', 'support': 'middle'}))
+
+
+def test_solid_elements_creep_like_the_membrane():
+    fine = parameters.replace(SECTION, {'elements': 64})
+    thin, thick, elastic = (elements.make(parameters.replace(fine, changes)) for changes in (
+        {}, {'element': 'solid', 'support': 'middle'}, {'viscous_share': 0.0}))
+    for steps in (10, 20):
+        height = settle(thin, steps, pressure=100.0).position[:, 1].max()
+        assert thick.surface(settle(thick, steps, pressure=100.0).position)[:, 1].max(
+            ) == pytest.approx(height, rel=1e-4)
+        assert settle(elastic, steps, pressure=100.0).position[:, 1].max() > 1.06 * height
+
+
+def test_a_held_solid_strip_relaxes_with_the_series():
+    position = SOLID.rest_position * [1.02, 1.0 / 1.02]
+    rest, time = Motion.at_rest(SOLID.rest_position), SECTION.viscous_time
+    memory, found = SOLID.after(rest, position, 0.0, 1.0e-9), []
+    dt, motion = 0.3 * time, Motion(position, position, position, position, memory)
+    elastic = SOLID.tension(position, 0.0)
+    for _ in range(4):
+        found.append((SOLID.settled(motion).tension(position, 0.0) - elastic).mean())
+        memory = SOLID.after(motion, position, 0.0, dt)
+        motion = Motion(position, position, position, position, memory)
+    thickness = SOLID.respond(SOLID.rest_position, 0.0).thickness[:1]
+    change = [SOLID.sheet.deviatoric_stress(np.array([1.5 * stretch]), thickness / stretch)[0, 0]
+              for stretch in (1.0, 1.02)]
+    jump = 0.5 * 1.53 * SECTION.initial_thickness * (change[1] - change[0])
+    assert found == pytest.approx(jump * np.exp(-0.3 * np.arange(4)), rel=1e-5)
+
+
+def test_tangent_and_force_of_a_viscous_solid_belong_together():
+    section = parameters.replace(SECTION, {'element': 'solid', 'elements': 6, 'chord': 0.002,
+                                           'bulk_modulus': 1.0e6})
+    solid = elements.make(section)
+    rng = np.random.default_rng(1)
+    bent = solid.rest_position + 5.0e-6 * rng.uniform(-1.0, 1.0, solid.rest_position.shape)
+    during = solid.during(Motion(bent, bent, bent, bent, solid.after(
+        Motion.at_rest(solid.rest_position), bent, 0.0, 1.0e-3)), 1.0e-3, 1.0e5)
+    assert np.abs(during.overstress.held).max(axis=1).min() > 10.0
+
+    def force(moved):
+        return during.internal_force(moved, 1.0e5).ravel()[solid.free]
+    computed = full(during.tangent(bent, 1.0e5))
+    for column, i in enumerate(solid.free):
+        step = np.zeros(bent.size)
+        step[i] = 1.0e-10
+        step = step.reshape(bent.shape)
+        slope = (force(bent + step) - force(bent - step)) / 2.0e-10
+        assert computed[:, column] == pytest.approx(slope, abs=1e-6 * np.abs(computed).max())
+
+
+def test_a_viscous_solid_restarts_bit_for_bit():
+    through, resumed = settle(SOLID, 6), settle(SOLID, 3, motion=settle(SOLID, 3))
+    assert through.memory.shape == (2, 3, 64)
+    assert np.array_equal(through.position, resumed.position)
+    assert np.array_equal(through.memory, resumed.memory)
 
 
 @pytest.mark.parametrize('shares, times', [((0.1,), ()), ((-0.1,), (1.0,)), ((0.1,), (0.0,))])

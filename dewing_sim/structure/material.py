@@ -87,6 +87,20 @@ def modulus(s, f, c, y, f_other, c_other, y_other, f_both, c_both, y_both):
             + s.cc * c * c_other + s.yc * (y * c_other + c * y_other))
 
 
+@register_jitable(error_model='numpy')
+def deviatoric_stress(c11, c22, c12, c33, mu, jm):
+    """Return S_11, S_22, S_12 (second Piola-Kirchhoff) of the Gent energy.
+
+    ``c11`` to ``c33`` are those of F^T F, of which the third axis is a principal one.
+    """
+    plane = c11 * c22 - c12 * c12
+    i1 = c11 + c22 + c33
+    scale = np.exp(np.log(plane * c33) / -3.0)
+    first, _ = gent(scale * i1, mu, jm)
+    factor, part = 2.0 * scale * first, i1 / (3.0 * plane)
+    return factor * (1.0 - part * c22), factor * (1.0 - part * c11), factor * part * c12
+
+
 _LEVI_CIVITA = np.zeros((3, 3, 3))
 for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
     _LEVI_CIVITA[_i, _j, _k], _LEVI_CIVITA[_i, _k, _j] = 1.0, -1.0

@@ -8,7 +8,7 @@ Forces are per unit span; any consistent system of units.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numba
@@ -19,10 +19,9 @@ from dewing_sim.errors import BadInput
 from dewing_sim.scales import Scales
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
-from dewing_sim.structure.motion import Motion
-from dewing_sim.structure.sheet import BALANCED, SI, Overstress, Response, Sheet, respond
+from dewing_sim.structure.sheet import BALANCED, SI, Response, Sheet, respond
 from dewing_sim.structure.taut import Taut
-from dewing_sim.structure.viscosity import Prony
+from dewing_sim.structure.viscosity import Overstress, Prony, Viscous
 
 
 @numba.njit(cache=True)
@@ -87,7 +86,7 @@ def _assemble_tangent(edges, tension, stiffness):
 
 
 @dataclass(frozen=True, eq=False)
-class Membrane(Taut):
+class Membrane(Taut, Viscous):
     """A prestretched sheet between pinned edges at (0, 0) and (chord, 0).
 
     ``rest_position`` (n+1, 2) is the flat prestretched state without load; ``mass`` (n+1,) is
@@ -119,10 +118,9 @@ class Membrane(Taut):
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Membrane':
         """Return the membrane of a parameter section in the units of ``scales``."""
         sheet = Sheet.from_parameters(section, scales)
-        viscosity = (Prony((section.viscous_share,), (section.viscous_time / scales.time,))
-                     if section.viscous_share else None)
         return cls.uniform(sheet, section.prestretch, section.density / scales.density,
-                           section.chord / scales.length, section.elements, viscosity)
+                           section.chord / scales.length, section.elements,
+                           Prony.from_parameters(section, scales))
 
     @property
     def elements(self) -> int:
@@ -165,34 +163,8 @@ class Membrane(Taut):
             self.respond(position, v_squared)       # raises and says where
         return force
 
-    def during(self, motion: Motion, dt: float, v_squared: float) -> 'Membrane':
-        """Return the membrane with the overstress of the step that follows ``motion``."""
-        if self.viscosity is None:
-            return self
-        memory = self._memory(motion, v_squared)
-        return replace(self, overstress=Overstress(self.viscosity.instant_gain(dt),
-                                                   self.viscosity.held(memory, dt)))
-
-    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
-              ) -> np.ndarray:
-        """Return the memory after a step from ``motion`` to ``position``; empty if elastic."""
-        if self.viscosity is None:
-            return motion.memory
-        stress = self._deviatoric_stress(position, v_squared)
-        return self.viscosity.remember(self._memory(motion, v_squared), stress, dt)
-
-    def settled(self, motion: Motion) -> 'Membrane':
-        """Return the membrane with its present overstress, to observe it."""
-        if self.viscosity is None or not motion.memory.size:
-            return self
-        return replace(self, overstress=Overstress(0.0, motion.memory[:-1].sum(axis=0)))
-
-    def _memory(self, motion: Motion, v_squared: float) -> np.ndarray:
-        if motion.memory.size:
-            return motion.memory
-        return self.viscosity.relaxed(self._deviatoric_stress(motion.position, v_squared))
-
-    def _deviatoric_stress(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+    def deviatoric_stress(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return S_dev of the elements along and through the sheet, (2, n)."""
         thickness = self.respond(position, v_squared).thickness
         return self.sheet.deviatoric_stress(self.stretch(position), thickness)
 

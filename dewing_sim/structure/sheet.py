@@ -21,12 +21,13 @@ from dewing_sim.scales import Scales
 from dewing_sim.structure.material import (
     VACUUM_PERMITTIVITY,
     Elastomer,
+    deviatoric_stress,
     energy,
-    gent,
     modulus,
     slopes,
     stress,
 )
+from dewing_sim.structure.viscosity import Overstress
 
 SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
 
@@ -106,16 +107,6 @@ class Response(NamedTuple):
     thickness: np.ndarray           # h
 
 
-class Overstress(NamedTuple):
-    """Viscous second Piola-Kirchhoff stress: ``gain`` times the deviatoric one, plus ``held``.
-
-    ``held`` (2, n) has the components along the stretch and through the thickness.
-    """
-
-    gain: float
-    held: np.ndarray
-
-
 @dataclass(frozen=True)
 class Sheet:
     """A thin layer of elastomer between compliant electrodes, with traction-free faces.
@@ -173,11 +164,11 @@ class Sheet:
 
         The components are those along the stretch and through ``thickness`` (n,).
         """
-        squares = np.stack([stretch, thickness / self.initial_thickness]) ** 2
-        i1 = squares.sum(axis=0) + self.lateral_stretch ** 2
-        scale = (np.sqrt(squares.prod(axis=0)) * self.lateral_stretch) ** (-2.0 / 3.0)
-        first, _ = gent(scale * i1, self.elastomer.shear_modulus, self.elastomer.gent_limit)
-        return 2.0 * first * scale * (1.0 - i1 / (3.0 * squares))
+        through = np.square(thickness / self.initial_thickness)
+        along, across, _ = deviatoric_stress(
+            np.square(stretch), through, 0.0, self.lateral_stretch ** 2,
+            self.elastomer.shear_modulus, self.elastomer.gent_limit)
+        return np.stack([along, across])
 
     def energies(self, stretch, v_squared: float) -> tuple[np.ndarray, np.ndarray]:
         """Return elastic and electrostatic energy eps J E^2 / 2 per unstretched volume, (n,)."""

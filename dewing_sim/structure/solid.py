@@ -22,7 +22,6 @@ from dewing_sim.scales import Scales
 from dewing_sim.structure import solid_assembly as assembly
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
-from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.pins import LOWER, MIDDLE, Springs, equations, mid_plane_weights
 from dewing_sim.structure.sheet import SI, Sheet
 from dewing_sim.structure.solid_element import BALANCED, LOCKED
@@ -36,6 +35,7 @@ from dewing_sim.structure.strip import (
     to_nodes,
 )
 from dewing_sim.structure.taut import Taut
+from dewing_sim.structure.viscosity import Overstress, Prony, Viscous
 
 HALF_BAND = 7               # couplings of a degree of freedom on either side
 EDGE_LENGTH = 2.0           # of the first element, in deformed thicknesses
@@ -53,7 +53,7 @@ class Response(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Solid(Taut):
+class Solid(Taut, Viscous):
     """A prestretched strip of hexahedra between (0, 0) and (chord, 0).
 
     ``support`` is `pins.LOWER` or `pins.MIDDLE`. ``length`` (n,) are the element lengths before
@@ -68,10 +68,13 @@ class Solid(Taut):
     length: np.ndarray
     mass: np.ndarray
     rest_position: np.ndarray
+    viscosity: Prony | None = None
+    overstress: Overstress | None = None
 
     @classmethod
     def uniform(cls, sheet: Sheet, prestretch: float, density: float, chord: float,
-                elements: int, support: str = LOWER) -> 'Solid':
+                elements: int, support: str = LOWER, viscosity: Prony | None = None,
+                ) -> 'Solid':
         """Return a strip of ``elements`` equal elements, shorter ones at the edges.
 
         Edges pinned at their lower side give way, so such a strip is cut a little shorter than
@@ -87,21 +90,16 @@ class Solid(Taut):
         position[0::2, 1], position[1::2, 1] = -0.5 * thickness, 0.5 * thickness
         total = chord / prestretch
         solid = cls(sheet, prestretch, chord, MIDDLE, total * share,
-                    nodal_mass(total * share, sheet, density), position)
+                    nodal_mass(total * share, sheet, density), position, viscosity)
         return solid if support == MIDDLE else _fitted(solid, density)
 
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Solid':
-        """Return the strip of a parameter section in the units of ``scales``.
-
-        Raises `BadInput` for a viscous branch, which only the membrane element has.
-        """
-        if section.viscous_share:
-            raise BadInput(f'membrane.viscous_share = {section.viscous_share:g}: solid elements '
-                           'are elastic; take membrane.element = membrane or a share of 0.0')
+        """Return the strip of a parameter section in the units of ``scales``."""
         return cls.uniform(Sheet.from_parameters(section, scales), section.prestretch,
                            section.density / scales.density, section.chord / scales.length,
-                           section.elements, section.support)
+                           section.elements, section.support,
+                           Prony.from_parameters(section, scales))
 
     @property
     def elements(self) -> int:
@@ -181,18 +179,11 @@ class Solid(Taut):
         """Return the gradient (2(n+1), 2) of the potential energy."""
         return self.respond(position, v_squared).force
 
-    def during(self, motion: Motion, dt: float, v_squared: float) -> 'Solid':
-        """Return the strip itself: it has no memory."""
-        return self
-
-    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
-              ) -> np.ndarray:
-        """Return the empty memory of an elastic strip."""
-        return motion.memory
-
-    def settled(self, motion: Motion) -> 'Solid':
-        """Return the strip itself."""
-        return self
+    def deviatoric_stress(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return S_dev at the integration points, components 11, 22 and 12, (3, 4n)."""
+        gain = self.overstress.gain if self.overstress else 0.0
+        return assembly.deviatoric_stresses(
+            position, *self._constants(v_squared)) / (1.0 + gain)
 
     def energies(self, position: np.ndarray, v_squared: float) -> tuple[float, float]:
         """Return the elastic and the electrostatic energy (C V^2 / 2) per unit span."""
@@ -239,8 +230,14 @@ class Solid(Taut):
 
     def _constants(self, v_squared: float) -> tuple:
         height = self.sheet.initial_thickness
-        return (self.length, height, self.sheet.lateral_stretch, v_squared / height ** 2,
-                *self.sheet.elastomer.constants)
+        mu, *others = self.sheet.elastomer.constants
+        gain, held = self.overstress or (0.0, self._no_stress)
+        return (held, self.length, height, self.sheet.lateral_stretch, v_squared / height ** 2,
+                (1.0 + gain) * mu, *others)
+
+    @cached_property
+    def _no_stress(self) -> np.ndarray:
+        return np.zeros((3, 4 * self.elements))
 
     def _require_balance(self, status: int, k: int, position: np.ndarray, v_squared: float):
         if status == BALANCED:

@@ -6,17 +6,12 @@ import math
 
 import numpy as np
 
-from dewing_sim.structure.material import energy
-from dewing_sim.structure.solid_element import (
-    BALANCED,
-    GAUSS,
+from dewing_sim.structure.material import deviatoric_stress, energy
+from dewing_sim.structure.solid_element import BALANCED, GAUSS, condense, gradient, hessian, relax
+from dewing_sim.structure.solid_shape import (
     KERNEL,
     NODES,
-    condense,
-    gradient,
-    hessian,
     measures,
-    relax,
     second_order_area,
     shape,
     shape_gradient,
@@ -66,20 +61,21 @@ def add_stiffness(band, curvature, k, length, height, lateral, equation, half):
 
 
 @KERNEL
-def respond(position, length, height, lateral, field, mu, jm, bulk, eps):
+def respond(position, held, length, height, lateral, field, mu, jm, bulk, eps):
     """Return nodal forces (2(n+1), 2), tension and thinning of elements (n,), status, element.
 
-    The tension is the force through a cross-section, negative if it pushes.
+    The tension is the force through a cross-section, negative if it pushes. ``held`` (3, 4n) is a
+    viscous overstress at the integration points, see `solid_element`.
     """
     n = length.size
     force, tension, thinning = np.zeros(position.shape), np.empty(n), np.empty(n)
     for k in range(n):
         z = shape(position, k, length[k], height)
         strains = measures(z, length[k], height)
-        a, b, status = relax(strains, lateral, field, mu, jm, bulk, eps)
+        a, b, status = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
         if status != BALANCED:
             return force, tension, thinning, status, k
-        by = gradient(strains, a, b, lateral, field, mu, jm, bulk, eps)
+        by = gradient(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps)
         slope = shape_gradient(z, strains, by, length[k], height)
         tension[k] = math.copysign(height / lateral * math.hypot(slope[0], slope[1]),
                                    slope[0] * z[0] + slope[1] * z[1])
@@ -89,24 +85,24 @@ def respond(position, length, height, lateral, field, mu, jm, bulk, eps):
 
 
 @KERNEL
-def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equation, before,
-              band):
+def stiffness(position, held, length, height, lateral, field, mu, jm, bulk, eps, equation,
+              before, band):
     """Add the tangent to ``band`` (2 w + 1, m); return status and element.
 
     ``equation`` (4 (n+1),) numbers the free coordinates and is negative at pins. ``before`` is
     the position from which Newton's last step came, or ``position`` for the exact tangent.
     """
-    inner, jacobian = np.empty((7, 7)), np.zeros((5, 6))
+    inner, jacobian = np.empty((8, 8)), np.zeros((6, 6))
     curvature, half = np.empty((6, 6)), np.empty((6, 8))
     for k in range(length.size):
         z = shape(position, k, length[k], height)
         strains = measures(z, length[k], height)
-        a, b, status = relax(strains, lateral, field, mu, jm, bulk, eps)
+        a, b, status = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
         if status != BALANCED:
             return status, k
         excess = second_order_area(z, shape(before, k, length[k], height))
-        by = gradient(strains, a, b, lateral, field, mu, jm, bulk, eps)
-        hessian(strains, a, b, lateral, field, mu, jm, bulk, eps, excess, inner)
+        by = gradient(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps)
+        hessian(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps, excess, inner)
         condense(inner)
         shape_hessian(z, strains, by, inner, length[k], height, jacobian, curvature)
         add_stiffness(band, curvature, k, length[k], height, lateral, equation, half)
@@ -114,13 +110,13 @@ def stiffness(position, length, height, lateral, field, mu, jm, bulk, eps, equat
 
 
 @KERNEL
-def energies(position, length, height, lateral, field, mu, jm, bulk, eps):
+def energies(position, held, length, height, lateral, field, mu, jm, bulk, eps):
     """Return the elastic and the electrostatic energy eps J E^2 / 2 per unit span."""
     elastic, electric = 0.0, 0.0
     for k in range(length.size):
         strains = measures(shape(position, k, length[k], height), length[k], height)
-        sa, sb, sd, p, q = strains
-        a, b, _ = relax(strains, lateral, field, mu, jm, bulk, eps)
+        sa, sb, sd, p, q, _ = strains
+        a, b, _ = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
         volume = 0.25 * length[k] * height / lateral
         for point in range(4):
             xi = GAUSS if point & 1 else -GAUSS
@@ -132,3 +128,22 @@ def energies(position, length, height, lateral, field, mu, jm, bulk, eps):
             elastic += volume * energy(i1, j, 0.0, mu, jm, bulk, eps)
             electric += volume * 0.5 * eps * y_squared / j
     return elastic, electric
+
+
+@KERNEL
+def deviatoric_stresses(position, held, length, height, lateral, field, mu, jm, bulk, eps):
+    """Return S_11, S_22, S_12 of the Gent energy at the integration points, (3, 4n)."""
+    stresses = np.empty((3, 4 * length.size))
+    for k in range(length.size):
+        strains = measures(shape(position, k, length[k], height), length[k], height)
+        sa, sb, _, p, q, sg = strains
+        a, b, _ = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
+        for point in range(4):
+            xi = GAUSS if point & 1 else -GAUSS
+            eta = GAUSS if point & 2 else -GAUSS
+            s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
+            found = deviatoric_stress(s1 * s1 * sa, s2 * s2 * sb, s1 * s2 * sg,
+                                      lateral * lateral, mu, jm)
+            for i in range(3):
+                stresses[i, 4 * k + point] = found[i]
+    return stresses

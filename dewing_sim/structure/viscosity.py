@@ -12,11 +12,16 @@ is solved exactly: h_i' = e_i h_i + beta_i r_i (S_dev' - S_dev), e = exp(-dt/tau
 r = (1 - e) tau / dt. Statics see the long-term elastomer.
 """
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
+from dewing_sim.scales import Scales
+from dewing_sim.structure.motion import Motion
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,13 @@ class Prony:
             if not (0.0 <= share < np.inf and 0.0 < time < np.inf):
                 raise BadInput(f'viscous branch of share {share} and time {time} s is out of '
                                'range: zero or more, and more than zero')
+
+    @classmethod
+    def from_parameters(cls, section: parameters.Membrane, scales: Scales) -> 'Prony | None':
+        """Return the branch of a parameter section, None if it has none."""
+        if not section.viscous_share:
+            return None
+        return cls((section.viscous_share,), (section.viscous_time / scales.time,))
 
     def instant_gain(self, dt: float) -> float:
         """Return the sum of beta r: the overstress per change of S_dev within a step."""
@@ -62,3 +74,54 @@ class Prony:
     def _ramp(self, dt: float) -> np.ndarray:
         share = dt / np.array(self.times)
         return -np.expm1(-share) / share
+
+
+Structure = TypeVar('Structure', bound='Viscous')
+
+
+class Overstress(NamedTuple):
+    """Viscous second Piola-Kirchhoff stress: ``gain`` times the deviatoric one, plus ``held``.
+
+    ``held`` (components, points) has the components of `Viscous.deviatoric_stress`.
+    """
+
+    gain: float
+    held: np.ndarray
+
+
+class Viscous(ABC):
+    """What structures remember that are dataclasses with ``viscosity`` and ``overstress``.
+
+    They are `Prony | None` and `Overstress | None`; without the former nothing is remembered.
+    """
+
+    @abstractmethod
+    def deviatoric_stress(self, position: np.ndarray, v_squared: float) -> np.ndarray:
+        """Return S_dev of the long-term elastomer (components, points)."""
+
+    def during(self: Structure, motion: Motion, dt: float, v_squared: float) -> Structure:
+        """Return the structure with the overstress of the step that follows ``motion``."""
+        if self.viscosity is None:
+            return self
+        memory = self._memory(motion, v_squared)
+        return replace(self, overstress=Overstress(self.viscosity.instant_gain(dt),
+                                                   self.viscosity.held(memory, dt)))
+
+    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
+              ) -> np.ndarray:
+        """Return the memory after a step from ``motion`` to ``position``; empty if elastic."""
+        if self.viscosity is None:
+            return motion.memory
+        stress = self.deviatoric_stress(position, v_squared)
+        return self.viscosity.remember(self._memory(motion, v_squared), stress, dt)
+
+    def settled(self: Structure, motion: Motion) -> Structure:
+        """Return the structure with its present overstress, to observe it."""
+        if self.viscosity is None or not motion.memory.size:
+            return self
+        return replace(self, overstress=Overstress(0.0, motion.memory[:-1].sum(axis=0)))
+
+    def _memory(self, motion: Motion, v_squared: float) -> np.ndarray:
+        if motion.memory.size:
+            return motion.memory
+        return self.viscosity.relaxed(self.deviatoric_stress(motion.position, v_squared))
