@@ -156,15 +156,16 @@ class Step:
         The first iteration starts at ``guess``, or, where a structure has a short linear range,
         at the present position; later loads start at what the one before reached.
         """
-        present, self.accuracy = self.motion.position, tolerance * self.structure.chord
-        start = guess if self.structure.linear_range == np.inf else present
+        present, keeps = self.motion.position, self.structure.linear_range == np.inf
+        self.accuracy = min(tolerance * self.structure.chord, self.structure.linear_range)
+        start = guess if keeps else present
         self._exact = False
         try:
             position = self._newton(load, start if self._reached is None else self._reached)
         except RunFailed:
             self._exact = True
             position = march(lambda at, share: self._share(load, at, share), present,
-                             SMALLEST_SHARE)
+                             SMALLEST_SHARE, 1.0 if keeps else 0.5)
         self._reached = position
         return position
 

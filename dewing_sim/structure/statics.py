@@ -97,9 +97,9 @@ def _solve(band: np.ndarray, imbalance: np.ndarray) -> np.ndarray:
 
 
 def march(solve: Callable[[np.ndarray, float], np.ndarray], position: np.ndarray,
-          smallest: float = SMALLEST_SHARE) -> np.ndarray:
-    """Raise the share of a load from 0 to 1, halving the step on failure, doubling after."""
-    share, step = 0.0, 1.0
+          smallest: float = SMALLEST_SHARE, first: float = 1.0) -> np.ndarray:
+    """Raise the share of a load from 0 to 1 by steps, halved on failure, doubled after."""
+    share, step = 0.0, first
     while share < 1.0:
         try:
             position = solve(position, min(1.0, share + step))
