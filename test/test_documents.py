@@ -184,6 +184,39 @@ def test_every_page_is_in_the_navigation():
     assert set(HERE.glob('**/*.md')) - {HERE / 'index.md'} <= linked
 
 
+# What the site adds.
+
+def extension(name):
+    return runpy.run_path(str(HERE / 'extensions' / f'{name}.py'))
+
+
+def test_docstrings_become_rest_with_equations_and_names_as_they_are():
+    to_rest = extension('plain_docstrings')['to_rest']
+    text = ['Return a * b of `name`, with y_ and |z|:', '', '    x_n+1 = A x_n', '',
+            '    y = C x', '', 'Raises ``Error``.']
+    assert to_rest(text) == [
+        r'Return a \* b of ``name``, with y\_ and \|z\|:', '', '', '::', '', '    x_n+1 = A x_n',
+        '', '    y = C x', '', '', 'Raises ``Error``.', '']
+
+
+def test_links_to_modules_lead_to_their_reference_and_the_front_page_navigates():
+    read = extension('plain_pages')['_read']
+    content = ['[a](../../dewing_sim/fluid/base.py) [b](../dewing_sim) [c](../README.md#limits)'
+               ' [d](../dewing_sim/__init__.py) [e](ros.md)']
+    read(None, 'page', content)
+    assert content == ['[a](/autoapi/dewing_sim/fluid/base/index.rst)'
+                       ' [b](/autoapi/dewing_sim/index.rst) c'
+                       ' [d](/autoapi/dewing_sim/index.rst) [e](ros.md)']
+    content = [(HERE / 'index.md').read_text()]
+    read(None, 'index', content)
+    trees = re.findall(r'^```{toctree}\n(?::.*\n)+\n((?:.+\n)+?)```$', content[0], re.M)
+    pages = [page for tree in trees for page in tree.split()]
+    assert {f'{page}.md' for page in pages if not page.startswith('autoapi')} == {
+        str(page.relative_to(HERE)) for page in HERE.glob('**/*.md')} - {'index.md'}
+    assert [page for page in pages if page.startswith('autoapi')] == [
+        f'autoapi/{package}/index' for package in ('dewing_sim', 'dewing_sysid', 'dewing_control')]
+
+
 # What scripts write.
 
 def test_the_figure_of_the_architecture_is_that_of_its_script():

@@ -132,6 +132,20 @@ def test_the_set_up_touches_no_folder_that_is_not_an_environment(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ['thesis.tex']
 
 
+def test_the_environment_of_the_documentation_depends_on_its_requirements_alone(tmp_path, setup):
+    environment = runpy.run_path(str(PROJECT / 'scripts' / 'environment.py'))
+    requirements = PROJECT / 'docs' / 'requirements.txt'
+    recipe = environment['recipe'](tmp_path, 'tools', requirements)
+    assert recipe != environment['recipe'](tmp_path, 'tools', None)
+    copy = tmp_path / 'copy.txt'
+    copy.write_text(requirements.read_text())
+    assert environment['recipe'](tmp_path, 'tools', copy) == recipe
+    copy.write_text('sphinx\n')
+    assert environment['recipe'](tmp_path, 'tools', copy) != recipe
+    listed = re.findall(r'^[a-z]\S+$', requirements.read_text(), re.M)
+    assert setup['extras_require']['docs'] == listed and len(listed) == 4
+
+
 def test_without_a_usable_python_the_set_up_says_what_is_needed(tmp_path):
     result = subprocess.run(['/bin/sh', PROJECT / 'scripts' / 'find_python'],
                             env={'PATH': str(tmp_path)}, capture_output=True, text=True)

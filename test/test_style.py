@@ -11,8 +11,7 @@ import pytest
 PROJECT = Path(__file__).parents[1]
 HEADER = ('# Copyright 2026 The dewing authors\n'
           '# SPDX-License-Identifier: Apache-2.0\n')
-FOLDERS = ('config', 'dewing_control', 'dewing_sim', 'dewing_sysid', 'scripts',
-           'test')
+FOLDERS = ('config', 'dewing_control', 'dewing_sim', 'dewing_sysid', 'docs', 'scripts', 'test')
 PYTHON = sorted(path.relative_to(PROJECT) for folder in FOLDERS
                 for path in (PROJECT / folder).rglob('*.py'))
 MODULES = [path for path in PYTHON if path.parts[0].startswith('dewing_')]
