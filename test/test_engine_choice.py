@@ -24,8 +24,8 @@ def test_the_conformal_engine_is_taken_where_it_has_been_verified():
 
 
 @pytest.mark.parametrize('change, reason', [
-    ({'camber': 0.15}, 'a camber of 0.15 is outside 0 to 0.1'),
-    ({'camber': -0.15}, 'a camber of 0.15'),
+    ({'camber': 0.16}, 'a camber of 0.16 is outside 0 to 0.15'),
+    ({'camber': -0.16}, 'a camber of 0.16'),
     ({'camber': math.inf}, 'a camber of inf'),
     ({'reynolds': 50.0}, 'a Reynolds number of 50 is outside 100 to 10000'),
     ({'reynolds': 2.0e4}, 'a Reynolds number of 2e.04'),

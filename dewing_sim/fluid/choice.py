@@ -13,7 +13,7 @@ from dewing_sim.errors import BadInput
 from dewing_sim.fluid.engines import GRIDS
 
 AUTO = 'auto'
-CAMBER = 0.10               # chords
+CAMBER = 0.15               # chords
 REYNOLDS = (100.0, 10000.0)
 ALPHA = 12.0                # deg
 TIME_STEP = 0.025           # c/U

@@ -43,7 +43,9 @@ class Influence:
         grid = poisson.grid
         h2 = _metric_of_arc(grid, trailing, leading)
         values, vectors = eigh(_diffusion(grid, 1.5 * h2[0] / dt, nu))
-        decay = _responses(grid, values, 1.5 / dt * np.mean(h2 - h2[0], axis=1), nu)
+        # Next to a strongly bent membrane the mean falls below 0: some mode would resonate.
+        potential = np.maximum(np.mean(h2 - h2[0], axis=1), 0.0)
+        decay = _responses(grid, values, 1.5 / dt * potential, nu)
         decay[decay < NEGLIGIBLE] = 0.0
         active = np.count_nonzero(decay, axis=1)
         reach = np.count_nonzero(active)
