@@ -211,7 +211,7 @@ def test_added_mass_is_symmetric_and_that_of_a_strip(engine):
 
 @pytest.mark.parametrize('n, expected', [(1, 0.8546), (2, 0.3592), (3, 0.2356)])
 def test_added_mass_of_sine_modes(n, expected):
-    engine = Conformal(Grid.build(PRESETS['realtime']), 2500.0, 0.0, 0.01)
+    engine = Conformal(Grid.build(PRESETS['fast']), 2500.0, 0.0, 0.01)
     columns = engine.columns
     mode = -np.diff(np.cos(n * np.pi * columns)) / (n * np.pi * np.diff(columns))
     assert 2.0 * mode @ weighted_added_mass(engine) @ mode == pytest.approx(expected, rel=5.0e-3)

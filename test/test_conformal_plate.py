@@ -65,7 +65,7 @@ def test_forced_camber():
     """
     steps, frequency = 160, 2.0 * np.pi * 1.44
     dt = 2.0 * np.pi / frequency / steps
-    engine = Conformal.preset('realtime', 2500.0, np.radians(4.0), dt)
+    engine = Conformal.preset('fast', 2500.0, np.radians(4.0), dt)
     x = engine.columns
     mean = np.diff(4.0 * (x**2 / 2.0 - x**3 / 3.0)) / np.diff(x)
     height = 4.0 * x * (1.0 - x)
@@ -88,7 +88,7 @@ def test_forced_camber():
 def test_shedding_at_eight_degrees():
     """NGSolve: mean Cl 0.94 +- 0.01, rms 0.134, Cd 0.155, St 0.683; another study 0.92."""
     dt = 0.0045
-    plate, state = settle(8.0, 'realtime', dt, 20.0)
+    plate, state = settle(8.0, 'fast', dt, 20.0)
     loads = []
     for _ in range(round(60.0 / dt)):
         state = plate.step(state)

@@ -26,11 +26,12 @@ class Preset:
 
 
 PRESETS = {
-    'realtime': Preset(96, 72, 0.008),
+    'realtime': Preset(80, 60, 0.0095),
+    'fast': Preset(96, 72, 0.008),
     'standard': Preset(128, 96, 0.006),
     'reference': Preset(192, 128, 0.005),
 }
-PRESETS.update(fast=PRESETS['realtime'], fine=PRESETS['reference'])     # names of both engines
+PRESETS['fine'] = PRESETS['reference']      # a name of both engines
 
 
 @dataclass(frozen=True)

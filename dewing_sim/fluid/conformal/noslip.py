@@ -9,8 +9,8 @@ A wall vorticity g spreads within a step as the solution of
 On a flat plate h^2 is a sum of functions of xi and eta, so one eigenproblem in xi and a
 tridiagonal system in eta for each of its modes give the response; the slip it removes is a dense
 matrix, inverted once.  For a cambered membrane h^2 is that of the circular arc with the same
-edges, to which the response is fitted by a sum: exact for arcs as far as slip is concerned, and
-what is left of the slip of another shape is shed in another pass.
+edges, to which the response is fitted by a sum.  Slip depends on h^2 w only: on another shape the
+h^2 w of the arc is shed, which removes the slip exactly.
 """
 
 from dataclasses import dataclass
@@ -35,6 +35,7 @@ class Influence:
     decay: np.ndarray               # (rows, n) response of each mode, 1 at the membrane
     active: np.ndarray              # (rows,) modes that reach each row
     inverse: np.ndarray             # (n, n), transposed: slip to coefficients of the modes
+    h2: np.ndarray                  # (rows, n) of the arc
 
     @classmethod
     def of(cls, poisson: Poisson, trailing: float, leading: float, nu: float, dt: float,
@@ -56,12 +57,12 @@ class Influence:
             weight = grid.width[j] * poisson.decay[j]
             matrix += fft.irfft(weight[:, None] * fft.rfft(vorticity, axis=0), len(values), axis=0)
         return cls(np.ascontiguousarray(vectors.T), decay, active,
-                   np.ascontiguousarray(np.linalg.inv(matrix).T))
+                   np.ascontiguousarray(np.linalg.inv(matrix).T), h2[:reach])
 
-    def remove(self, slip: np.ndarray, w: np.ndarray) -> int:
-        """Add to ``w`` the vorticity that removes ``slip`` (n,); return how many rows changed."""
+    def remove(self, slip: np.ndarray, h2: np.ndarray, w: np.ndarray, q: np.ndarray) -> int:
+        """Add to ``w`` and to ``q`` = h^2 w what removes ``slip`` (n,); return the rows reached."""
         coefficients = _multiply(self.inverse, slip)
-        _add_response(self.modes, self.decay, self.active, coefficients, w)
+        _add_response(self.modes, self.decay, self.active, coefficients, self.h2, h2, w, q)
         return len(self.decay)
 
 
@@ -109,13 +110,19 @@ def _multiply(transposed, vector):
 
 
 @kernel
-def _add_response(modes, decay, active, coefficients, w):
+def _add_response(modes, decay, active, coefficients, h2_arc, h2, w, q):
     """Add the modes with a decay along eta; ascending eigenvalues reach less and less far."""
     rows, n = decay.shape
+    shed = np.empty(n)
     for j in range(rows):
+        shed[:] = 0.0
         for m in range(0, active[j], BLOCK):        # beyond the active modes decay is zero
             a, b = coefficients[m] * decay[j, m], coefficients[m + 1] * decay[j, m + 1]
             c, d = coefficients[m + 2] * decay[j, m + 2], coefficients[m + 3] * decay[j, m + 3]
             for i in range(n):
-                w[j, i] += (a * modes[m, i] + b * modes[m + 1, i]
+                shed[i] += (a * modes[m, i] + b * modes[m + 1, i]
                             + c * modes[m + 2, i] + d * modes[m + 3, i])
+        for i in range(n):
+            change = h2_arc[j, i] * shed[i]
+            q[j, i] += change
+            w[j, i] += change / h2[j, i]

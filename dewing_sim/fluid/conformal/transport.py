@@ -13,7 +13,7 @@ import numpy as np
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.kernels import kernel
 
-FIRST_ORDER = 1.0       # radius about an edge, per dt, of first-order extrapolation
+FIRST_ORDER = 0.65      # radius about an edge, per dt, of first-order extrapolation
 UPWIND = 0.5            # share of the dissipation of third-order upwind fluxes
 
 
