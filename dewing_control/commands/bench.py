@@ -78,8 +78,8 @@ def time_preset(case: str, engine: str, preset: str, steps: int,
                 changes: dict[str, Any]) -> dict[str, Any]:
     """Return cells, times and their parts of ``case`` on one grid preset of an engine."""
     from dewing_sim.wing import Wing
-    wing = Wing(parameters.load(case, changes=changes | {
-        'numerics.engine': engine, 'numerics.grid': preset, 'numerics.trim_time': 2.0}))
+    wing = Wing(parameters.load(case, changes={'numerics.trim_time': 2.0} | changes | {
+        'numerics.engine': engine, 'numerics.grid': preset}))
     state = wing.rest()
     v_squared = wing.case.actuation.voltage**2
     laps, passes = Laps(), 0
