@@ -60,7 +60,7 @@ class Influence:
                    np.ascontiguousarray(np.linalg.inv(matrix).T), h2[:reach])
 
     def remove(self, slip: np.ndarray, h2: np.ndarray, w: np.ndarray, q: np.ndarray) -> int:
-        """Add to ``w`` and to ``q`` = h^2 w what removes ``slip`` (n,); return the rows reached."""
+        """Add to ``w`` and ``q`` = h^2 w what removes ``slip`` (n,); return the rows reached."""
         coefficients = _multiply(self.inverse, slip)
         _add_response(self.modes, self.decay, self.active, coefficients, self.h2, h2, w, q)
         return len(self.decay)
