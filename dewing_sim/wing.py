@@ -140,8 +140,13 @@ class Wing:
 
 
 def _peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Return the largest deflection and its place, by a parabola through three nodes."""
-    k = min(max(int(np.argmax(y)), 1), len(y) - 2)
+    """Return the largest deflection and its place, by a parabola through three nodes.
+
+    A membrane that bends down everywhere is highest at an edge.
+    """
+    k = int(np.argmax(y))
+    if k in (0, len(y) - 1):
+        return float(y[k]), float(x[k])
     curvature, slope, height = np.polyfit(x[k - 1:k + 2] - x[k], y[k - 1:k + 2], 2)
     if curvature >= 0.0:
         return float(y[k]), float(x[k])

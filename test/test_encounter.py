@@ -184,3 +184,21 @@ def test_what_outruns_the_stream_is_refused(changes, message):
 def test_a_course_that_is_not_known_is_refused():
     with pytest.raises(BadInput, match='^gust.shape = .step. is out of range: .*one_minus_cosine'):
         parameters.load('paper', changes={'gust.shape': 'step'})
+
+
+def test_a_gust_along_the_stream_raises_the_lift_with_the_square_of_the_speed():
+    dt, gust = 0.02, Encounter(ALPHA, gust=0.2, gust_course=Course('ramp', 0.0, 1.0))
+    calm, fast = (lift(conformal(dt), encounter.at, 900) for encounter in (Encounter(ALPHA), gust))
+    assert fast == pytest.approx(1.44 * calm, rel=0.04)
+
+
+def test_a_membrane_pressed_down_is_highest_at_an_edge():
+    wing = Wing(parameters.load('paper', changes={
+        **CONFORMAL, **GUST, 'gust.vertical': -0.3, 'gust.shape': 'ramp'}))
+    state = wing.rest()
+    for _ in range(100):
+        state = wing.step(state, 0.0)
+    outputs = wing.observe(state)
+    assert outputs.camber_mean < 0.0
+    assert 0.0 <= outputs.camber_max < 1.0e-3 * -outputs.camber_mean
+    assert outputs.camber_max_position in (0.0, 1.0)
