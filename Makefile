@@ -4,7 +4,7 @@
 
 VENV ?= .venv
 BIN = $(VENV)/bin
-SPHINX = $(VENV)-docs/bin/python -m sphinx --keep-going
+SPHINX = $(VENV)-docs/bin/python -m sphinx --keep-going -j auto
 PYTEST_OPTIONS ?=
 DEMO_OPTIONS ?= --force
 BENCH_OPTIONS ?=

@@ -18,7 +18,10 @@ release = re.search(r"version='([^']+)'", (PROJECT / 'setup.py').read_text())[1]
 extensions = ['myst_parser', 'autoapi.extension', 'mathml', 'plain_docstrings', 'plain_pages']
 nitpicky = False                # docstrings name private helpers too
 smartquotes = False
-suppress_warnings = ['autoapi.python_import_resolution']    # libraries are not installed here
+suppress_warnings = [
+    'autoapi.python_import_resolution',     # libraries are not installed here
+    'ref.python',                           # an annotation may fit classes of several modules
+]
 
 html_theme = 'furo'
 html_title = f'dewing {release}'
