@@ -7,6 +7,9 @@ import pytest
 
 from dewing_sim import parameters
 from dewing_sim.amplifier import Amplifier
+from dewing_sim.structure import elements
+from dewing_sim.structure.dynamics import Operator, Step, advance
+from dewing_sim.structure.motion import Motion
 from dewing_sim.structure.pins import MIDDLE
 from dewing_sim.structure.solid import Solid
 from dewing_sim.trim import march
@@ -45,6 +48,25 @@ def test_solid_elements_are_stepped_from_flow_to_outputs():
     assert outputs.tension == pytest.approx(1.10, abs=0.01)
     # The pinned corners are thinner than the sheet.
     assert outputs.electric_field == pytest.approx(400.0 / 33.3e-6, rel=0.05)
+
+
+def test_the_last_tangent_serves_the_next_load(monkeypatch):
+    solid = elements.make(parameters.replace(parameters.load('paper').membrane,
+                                             {'element': 'solid', 'elements': 16}))
+    step = Step(solid, Motion.at_rest(solid.rest_position), 1.0e-4, 1.0e4,
+                Operator.of(solid, 1.0e-4))
+    made, tangent = [], Solid.tangent
+    monkeypatch.setattr(Solid, 'tangent', lambda *args: made.append(1) or tangent(*args))
+    counts, pressures = [], (0.35, 0.3501, 20.0)
+    for pressure in pressures:
+        position = step.reach(lambda p, w, q=pressure: solid.pressure_force(p, q),
+                              solid.rest_position)
+        counts.append(len(made))
+    assert 0 < counts[0] == counts[1] < counts[2]
+    alone = advance(solid, Motion.at_rest(solid.rest_position), 1.0e-4, 1.0e4,
+                    lambda p, w: solid.pressure_force(p, pressures[-1]),
+                    Operator.of(solid, 1.0e-4))
+    assert np.abs(position - alone.position).max() < 1.0e-9 * solid.chord
 
 
 def test_steps_with_solid_elements_repeat_bit_for_bit():
