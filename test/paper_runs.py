@@ -13,7 +13,7 @@ from dewing_sim.errors import RunFailed
 
 TINY = replace(
     QUICK, grids={'finite_volume': 'fast', 'conformal': 'realtime'}, trim=0.2, rest=0.2,
-    shed=4.0, variant=1.0, loop=0.02, averaged=0.01, long=0.2, frames=2,
+    shed=2.0, variant=1.0, loop=0.02, averaged=0.01, long=0.2, frames=2,
     variants=((4.0, 'finite_volume', 'fast', 1.0e-4), (8.0, 'conformal', 'realtime', 1.0e-4)),
     chords=(0.030,), shares=(0.5,), swings=())
 

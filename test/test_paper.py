@@ -329,14 +329,13 @@ def test_the_command_from_an_interrupt_to_the_report(tmp_path, monkeypatch, caps
         time.sleep(0.2)
     process.send_signal(signal.SIGINT)
     assert process.wait(60) == 130
-    assert process.stderr.read().splitlines() == ['dewing: interrupted']
+    kept, interrupted = process.stderr.read().splitlines()
+    assert re.match(r'dewing: kept [1-9]\d* of \d+ runs in ', kept)
+    assert interrupted == 'dewing: interrupted'
     assert not (out / paper.REPORT).exists()
     assert cli.main(arguments) == 0
     numbers = json.loads((out / paper.NUMBERS).read_text())
     assert numbers['failures'] == {} and len(numbers['rows']) >= 15
     assert (out / paper.REPORT).stat().st_size > 500_000
     assert cli.main(arguments) == 2
-    began = time.perf_counter()
-    assert cli.main([*arguments, '--force']) == 0
-    assert json.loads((out / paper.NUMBERS).read_text())['seconds'] < time.perf_counter() - began
     assert capsys.readouterr().out == ''

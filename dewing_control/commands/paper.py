@@ -9,6 +9,7 @@ Exit status 1 if a run failed; the report then says which.
 """
 
 import argparse
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -65,11 +66,20 @@ def compute(plan: Any, folder: Path, jobs: int, quiet: bool) -> tuple[dict, floa
     paths = {name: folder / RUNS / f'{file_name(name)}.npz' for name in plan.runs}
     kept = {name: recall(paths[name], marks[name]) for name in plan.runs}
     known = {name: result for name, result in kept.items() if result is not None}
+    finished = set(known)
+
+    def finish(name: str, result: Any) -> None:
+        keep(paths[name], result, marks[name])
+        finished.add(name)
+
     began = time.perf_counter()
-    with bar(f'{len(plan.runs) - len(known)} runs', quiet=quiet) as progress:
-        found = workers.execute(
-            plan.runs, known, jobs,
-            lambda name, result: keep(paths[name], result, marks[name]), progress)
+    try:
+        with bar(f'{len(plan.runs) - len(known)} runs', quiet=quiet) as progress:
+            found = workers.execute(plan.runs, known, jobs, finish, progress)
+    except KeyboardInterrupt:
+        print(f'dewing: kept {len(finished)} of {len(plan.runs)} runs in {folder / RUNS}',
+              file=sys.stderr)
+        raise
     return found, time.perf_counter() - began
 
 
