@@ -11,6 +11,7 @@ from dewing_sim import spectrum
 from dewing_sim.verification.signals import Mean, block_mean
 
 BLOCKS = 8
+FIRST_MODE = 72.4           # Hz, of the paper's membrane in still air: strip in potential flow
 SHEDDING = (0.45, 0.85)     # Strouhal numbers f c/U between which a wing like this one sheds
 STATIONS = np.linspace(0.0, 1.0, 101)       # x/c at which shapes are compared
 

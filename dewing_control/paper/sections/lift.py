@@ -6,7 +6,7 @@ import numpy as np
 
 from dewing_control.paper import drawing
 from dewing_control.paper.plan import Plan
-from dewing_control.paper.quantities import average, lines, shedding
+from dewing_control.paper.quantities import FIRST_MODE, average, lines, shedding
 from dewing_control.paper.section import Figure, Found, Row, Section, Table
 from dewing_sim import spectrum
 
@@ -62,8 +62,9 @@ def _text(found: Found) -> str:
     return ('The wing is not disturbed: it oscillates by itself, with the vortices that leave the '
             f'leading edge. Lines of the lift above a thousandth of the strongest: {listed} Hz. '
             f'The strongest is at {lines(flight, most=1)[0]:.1f} Hz. The first frequency of the '
-            f'membrane in still air is 72.4 Hz, close to three times the shedding frequency of '
-            f'{shedding(flight):.1f} Hz, so the third harmonic of the shedding is amplified.')
+            f'membrane in still air is {FIRST_MODE} Hz, close to three times the shedding '
+            f'frequency of {shedding(flight):.1f} Hz, so the third harmonic of the shedding is '
+            'amplified.')
 
 
 def _row(engine: str, flight) -> tuple[str, ...]:

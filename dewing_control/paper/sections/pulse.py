@@ -7,6 +7,7 @@ import numpy as np
 from dewing_control.identified import CHANGES
 from dewing_control.paper import drawing, experiments
 from dewing_control.paper.plan import Plan
+from dewing_control.paper.quantities import FIRST_MODE
 from dewing_control.paper.section import Figure, Found, Row, Section, Table
 from dewing_sim import parameters
 from dewing_sysid.identify import factorise, realise
@@ -77,7 +78,7 @@ def _table(records: dict, models: dict, length: float, identity) -> Table:
         head = record.head(samples(length, time_scale(identity), record.dt))
         fits, fresh = _fits(head, model), _fits(records[FRESH], model)
         frequency, damping = model.modes()
-        main = np.argmin(np.abs(frequency - 72.4)) if len(frequency) else None
+        main = np.argmin(np.abs(frequency - FIRST_MODE)) if len(frequency) else None
         rows.append((str(order), *(_percent(fits[name]) for name in OUTPUTS),
                      *(_percent(fresh[name]) for name in OUTPUTS),
                      '-' if main is None else f'{frequency[main]:.1f}',

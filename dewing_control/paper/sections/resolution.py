@@ -24,7 +24,7 @@ def section(plan: Plan, found: Found) -> Section:
         'one solves for velocity and pressure on a body-fitted grid, the other for vorticity on '
         'a conformal map.']
     tables = [_table(degrees, measured) for degrees in (4.0, 8.0)]
-    return Section('resolution', 'Grid and time step', text, [_figure(plan, measured)], tables,
+    return Section('resolution', 'Grid and time step', text, [_figure(measured)], tables,
                    _rows(plan, found, measured), {'resolution': _series(measured)})
 
 
@@ -104,7 +104,7 @@ def _cell(value: tuple[float, float]) -> str:
     return f'{value[0]:.4g} ± {value[1]:.1g}'
 
 
-def _figure(plan: Plan, measured: dict) -> Figure:
+def _figure(measured: dict) -> Figure:
     figure, axes = drawing.axes(1, 2, 3.4)
     for axis, degrees in zip(axes[0], (4.0, 8.0)):
         chosen = [(v, m) for v, m in measured.items() if v.degrees == degrees]
@@ -112,7 +112,7 @@ def _figure(plan: Plan, measured: dict) -> Figure:
             colour = drawing.BLUE if variant.engine == 'finite_volume' else drawing.ORANGE
             marker = 'o' if variant.engine == 'finite_volume' else 's'
             axis.errorbar(values['cl'][0], place, xerr=values['cl'][1], fmt=marker, color=colour)
-        main = of_value(chosen, plan)
+        main = _reported(chosen)
         if main is not None:
             axis.axvspan(main * (1.0 - CRITERION), main * (1.0 + CRITERION), color='0.92')
         axis.set_yticks(range(len(chosen)), [_short(v) for v, _ in chosen])
@@ -123,8 +123,8 @@ def _figure(plan: Plan, measured: dict) -> Figure:
                   drawing.png(figure))
 
 
-def of_value(chosen: list, plan: Plan) -> float | None:
-    """Return the lift of the reported run among the variants drawn, if it is there."""
+def _reported(chosen: list) -> float | None:
+    """Return the lift of the reported run, if it is among the variants drawn."""
     return next((values['cl'][0] for variant, values in chosen
                  if variant.flight in ('rest', 'shed')), None)
 
