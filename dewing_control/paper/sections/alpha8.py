@@ -73,6 +73,7 @@ def _text(rows: list[dict[str, Any]]) -> list[str]:
     passive, held = rows[0], rows[-1]
     most = max(rows, key=lambda row: row['cl'])
     best = max(rows, key=lambda row: row['glide'])
+    least = min(rows, key=lambda row: row['cl'])
     return [
         'Can V² suppress the self-excited oscillation? That of the membrane, yes: held at '
         f'{held["camber"]:.2f} of the passive mean, the camber swings by '
@@ -87,7 +88,8 @@ def _text(rows: list[dict[str, Any]]) -> list[str]:
         f'Can it exploit the oscillation? The largest mean lift is {most["cl"]:.3f} '
         f'± {most["cl_error"]:.1g} ({most["label"]}), '
         f'{100.0 * (most["cl"] / passive["cl"] - 1.0):+.1f} % against the passive wing '
-        f'({passive["cl"]:.3f} ± {passive["cl_error"]:.1g}); the largest Cl/Cd is '
+        f'({passive["cl"]:.3f} ± {passive["cl_error"]:.1g}), the smallest {least["cl"]:.3f} '
+        f'± {least["cl_error"]:.1g} ({least["label"]}); the largest Cl/Cd is '
         f'{best["glide"]:.2f} ({best["label"]}), {passive["glide"]:.2f} passive.']
 
 
