@@ -78,6 +78,6 @@ def _processes(jobs: int) -> Any:
     previous = signal.signal(signal.SIGINT, signal.SIG_IGN)     # children inherit it
     try:
         return LocalCluster(n_workers=jobs, threads_per_worker=1, memory_limit=0,
-                            dashboard_address=None, silence_logs=logging.CRITICAL)
+                            dashboard_address='127.0.0.1:0', silence_logs=logging.CRITICAL)
     finally:
         signal.signal(signal.SIGINT, previous)

@@ -84,7 +84,7 @@ def cluster():
     """Return the address of a dask scheduler with one worker in this process."""
     from distributed import LocalCluster
     with LocalCluster(n_workers=1, threads_per_worker=1, processes=False,
-                      dashboard_address=None) as running:
+                      dashboard_address='127.0.0.1:0') as running:
         yield running.scheduler_address
 
 
