@@ -91,7 +91,8 @@ def _columns_to_nodes(values, angles):
     """Interpolate cubically; columns lie at theta = pi - (c + 1/2) d theta, even in theta."""
     columns = values.size
     padded = np.empty(columns + 4)      # theta may leave [0, pi] by half a column
-    padded[2:columns + 2] = values
+    for c in range(columns):
+        padded[c + 2] = values[c]
     for m in range(2):
         padded[1 - m] = values[m]
         padded[columns + 2 + m] = values[columns - 1 - m]

@@ -115,7 +115,8 @@ def _add_response(modes, decay, active, coefficients, h2_arc, h2, w, q):
     rows, n = decay.shape
     shed = np.empty(n)
     for j in range(rows):
-        shed[:] = 0.0
+        for i in range(n):
+            shed[i] = 0.0
         for m in range(0, active[j], BLOCK):        # beyond the active modes decay is zero
             a, b = coefficients[m] * decay[j, m], coefficients[m + 1] * decay[j, m + 1]
             c, d = coefficients[m + 2] * decay[j, m + 2], coefficients[m + 3] * decay[j, m + 3]

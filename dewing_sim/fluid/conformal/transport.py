@@ -55,7 +55,8 @@ def fluxes(psi, sinh_face, sin_corner, step, width):
         for i in range(1, n):
             v[j, i] = ((psi[j, i] - psi[j, i - 1]) * per_step
                        + s * (sin_corner[i] - sin_corner[i - 1]))
-    u[0, :] = 0.0
+    for i in range(n):
+        u[0, i] = 0.0
     for j in range(1, rows):
         per_width = -1.0 / width[j]
         s = (sinh_face[j] - sinh_face[j - 1]) * per_width
@@ -106,7 +107,8 @@ def subtract_convection(w, v, u, step, width, out):
         if j == 0:
             continue
         padded[0] = w[j, n - 1]
-        padded[1:n + 1] = w[j]
+        for i in range(n):
+            padded[i + 1] = w[j, i]
         padded[n + 1] = w[j, 0]
         padded[n + 2] = w[j, 1]
         for i in range(n):
@@ -118,7 +120,10 @@ def subtract_convection(w, v, u, step, width, out):
         for i in range(n):
             out[j, i] -= ((flux[new, i] - flux[old, i]) * per_width
                           + (along[i + 1] - along[i]) * per_step)
-    return flux[(rows - 1) % 2].sum() * step
+    outflow = 0.0
+    for i in range(n):
+        outflow += flux[(rows - 1) % 2, i]
+    return outflow * step
 
 
 @kernel
