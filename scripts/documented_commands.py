@@ -54,7 +54,7 @@ LONG_IN_TEXT = (
     'dewing plate --alpha 4', 'dewing simulate --case paper', 'dewing verify --quick',
     'dewing verify --out docs --force', 'dewing material --coupled',
     'dewing bench --presets standard --set membrane.element=solid --set membrane.elements=400',
-    'dewing tune --kind lqg', 'dewing tune --noise-gain 40',
+    'dewing bench --engine conformal', 'dewing tune --kind lqg', 'dewing tune --noise-gain 40',
     'dewing compare --duration 0.4',
     'dewing compare --scenarios target_097 --controllers pid_tuned,lqg,mpc --duration 1.0'
     ' --jobs 1',
