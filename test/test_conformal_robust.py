@@ -79,3 +79,18 @@ def test_a_wing_bears_violent_steps_of_the_voltage():
         cambers.append(wing.observe(state).camber_max)
     assert calm < max(cambers) < 0.1 * wing.case.membrane.chord
     assert np.isfinite(wing.observe(state).cl)
+
+
+def test_the_lift_of_a_bending_plate_is_free_of_noise():
+    fluid = engines.make('conformal', 'fast', 2500.0, np.radians(4.0), 0.002)
+    omega, lift = 2.0 * np.pi * 1.44, []
+    flow = fluid.rest(Wall.flat(fluid.columns), 0.0)
+    for step in range(1, 201):
+        phase = omega * step * fluid.dt
+        wall = parabola(fluid.columns, 0.005 * (1.0 - np.cos(phase)),
+                        0.005 * omega * np.sin(phase))
+        flow = fluid.correct(fluid.predict(flow, wall), wall.velocity)
+        lift.append(fluid.loads(flow).cl)
+    amplitude = np.ptp(lift[60:])
+    assert amplitude > 0.5
+    assert np.abs(np.diff(lift[60:], 3)).max() < 1.5e-4 * amplitude

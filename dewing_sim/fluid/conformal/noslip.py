@@ -9,8 +9,10 @@ A wall vorticity g spreads within a step as the solution of
 On a flat plate h^2 is a sum of functions of xi and eta, so one eigenproblem in xi and a
 tridiagonal system in eta for each of its modes give the response; the slip it removes is a dense
 matrix, inverted once.  For a cambered membrane h^2 is that of the circular arc with the same
-edges, to which the response is fitted by a sum.  Slip depends on h^2 w only: on another shape the
-h^2 w of the arc is shed, which removes the slip exactly.
+edges, to which the response is fitted by a sum.  On another shape the w of the arc is shed, which
+leaves a little slip, and then the h^2 w of the arc for that: slip depends on h^2 w only, so that
+it is gone.  The latter alone would do, but near the edges its w jumps where the table of arcs
+changes place, and the lift with it.
 """
 
 from dataclasses import dataclass
@@ -59,10 +61,15 @@ class Influence:
         return cls(np.ascontiguousarray(vectors.T), decay, active,
                    np.ascontiguousarray(np.linalg.inv(matrix).T), h2[:reach])
 
-    def remove(self, slip: np.ndarray, h2: np.ndarray, w: np.ndarray, q: np.ndarray) -> int:
-        """Add to ``w`` and ``q`` = h^2 w what removes ``slip`` (n,); return the rows reached."""
+    def remove(self, slip: np.ndarray, h2: np.ndarray, w: np.ndarray, q: np.ndarray,
+               exactly: bool) -> int:
+        """Add to ``w`` and ``q`` = h^2 w what removes ``slip`` (n,); return the rows reached.
+
+        Either the w of the arc, smooth in the shape of the membrane, or ``exactly`` its h^2 w.
+        """
         coefficients = _multiply(self.inverse, slip)
-        _add_response(self.modes, self.decay, self.active, coefficients, self.h2, h2, w, q)
+        _add_response(self.modes, self.decay, self.active, coefficients,
+                      self.h2 if exactly else h2, h2, w, q)
         return len(self.decay)
 
 
