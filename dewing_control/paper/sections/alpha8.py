@@ -13,6 +13,8 @@ from dewing_control.paper.result import Result
 from dewing_control.paper.section import Figure, Found, Section, Table
 from dewing_sim.verification.signals import block_mean
 
+CAUGHT = 0.05               # of the target
+
 
 def section(plan: Plan, found: Found) -> Section:
     """Return what steady, swinging and fed back V² do to lift and oscillation."""
@@ -115,5 +117,9 @@ def _figure(plan: Plan, found: Found, made: Section) -> Figure:
     made.series['alpha8_held'] = {
         't [s]': held['time'], 'camber [passive mean]': held['camber'], 'Cl': held['cl'],
         'Cd': held['cd'], 'V [V]': np.sqrt(held['v_squared'])}
+    error = np.abs(held['camber'] - target) > CAUGHT * target
+    caught = held['time'][np.flatnonzero(error)[-1]] if error.any() else 0.0
     return Figure('alpha8', 'The wing at 8 degrees, passive and with its mean camber held by the '
-                  'PID: the membrane stands still, the lift does not.', drawing.png(figure))
+                  'PID: the membrane stands still, the lift does not. From '
+                  f'{1.0e3 * caught:.0f} ms on the camber stays within {100.0 * CAUGHT:g} % of '
+                  'the target.', drawing.png(figure))

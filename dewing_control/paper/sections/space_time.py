@@ -33,9 +33,9 @@ def section(plan: Plan, found: Found) -> Section:
                                  for k in range(0, len(STATIONS), 5)}}
     return Section(
         'space_time', 'Displacement in space and time (Fig. 3c)',
-        ['Stripes that lean would be waves along the membrane, upright ones standing waves. The '
-         'dominant motion is a standing half wave; the vortex that passes above adds a wave that '
-         'travels downstream.'],
+        ['Level stripes are standing waves, leaning ones would travel along the membrane. The '
+         'motion is a standing half wave, whose centre shifts a little as a vortex passes above: '
+         'the share of the second and third mode.'],
         [Figure('space_time', 'Displacement of the membrane at 8 degrees, whole (left) and '
                 'without the mean shape (right).', drawing.png(figure))],
         series={'displacement': columns})
