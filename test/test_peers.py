@@ -55,13 +55,14 @@ def test_the_first_accurate_step_is_taken_and_failures_are_kept(peers):
         raise peers('openfoam').Failed('icoFoam failed: exit status 1')
 
     found = compare.first_accurate(
-        [(0.4, fails), (0.2, lambda: exact | {'cl': np.full(41, 1.02)}),
+        [(0.8, lambda: exact | {'cl': np.full(41, np.nan)}), (0.4, fails),
+         (0.2, lambda: exact | {'cl': np.full(41, 1.02)}),
          (0.1, lambda: exact | {'cl': np.full(41, 1.005)}), (0.05, lambda: exact)], exact)
     assert found['dt'] == 0.1
     assert found['cl_error'] == pytest.approx(0.005)
     assert (found['wall_s'], found['cpu_s']) == pytest.approx((2.0, 1.0))
-    assert [set(attempt) for attempt in found['tried'][:2]] == [
-        {'dt', 'failed'}, {'dt', 'cl_error', 'wall_s', 'cpu_s'}]
+    assert [set(attempt) for attempt in found['tried'][:3]] == [
+        {'dt', 'failed'}, {'dt', 'failed'}, {'dt', 'cl_error', 'wall_s', 'cpu_s'}]
 
 
 def test_an_absent_peer_is_skipped_and_named(peers, monkeypatch, capsys):

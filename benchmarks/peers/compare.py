@@ -117,6 +117,9 @@ def first_accurate(attempts: list[tuple[float, Callable[[], Run]]], reference: R
             tried.append({'dt': dt, 'failed': str(reason).splitlines()[0]})
             continue
         found = {'dt': dt, 'cl_error': error(run, reference), **per_unit(run)}
+        if not np.isfinite(found['cl_error']):
+            tried.append({'dt': dt, 'failed': 'diverged'})
+            continue
         found |= {'grid': run['grid']} if 'grid' in run else {}
         tried.append(found)
         if found['cl_error'] <= TOLERANCE:
