@@ -32,7 +32,9 @@ def section(plan: Plan, found: Found) -> Section:
         'realisation algorithm (paper eq. 7 to 9) makes models of any order from one singular '
         'value decomposition. A fit of 100 % is perfect; "fresh" is a binary sequence that the '
         'models have not seen. The paper uses a window of 1.2 c/U and order 10; that window holds '
-        'two periods of the first mode, too few for its damping.'])
+        'two periods of the first mode, too few for its damping. A spectral radius above 1 is a '
+        'growing model: a slow pole of the wake that ERA places outside the unit circle; control '
+        'mirrors it.'])
     models = {length: _models(records, identity, length) for length in WINDOWS}
     made.figures.append(_figure(records[EXPERIMENT].head(window), models[WINDOWS[0]], made))
     made.tables = [_table(records, models, length, identity) for length in WINDOWS]
