@@ -36,3 +36,13 @@ def write(tmp_path):
         path.write_text(text, encoding='utf-8')
         return str(path)
     return write
+
+
+@pytest.fixture
+def own_folder(tmp_path, monkeypatch):
+    """Run in an empty folder with an empty cache."""
+    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'cache'))
+    folder = tmp_path / 'work'
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    return folder

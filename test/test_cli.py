@@ -25,14 +25,7 @@ PLATE_KEYS = {'cl_mean', 'cl_rms', 'cd_mean', 'cd_rms', 'cm_mean', 'strouhal', '
               'cells', 'dt', 'engine'}
 
 
-@pytest.fixture(autouse=True)
-def own_folder(tmp_path, monkeypatch):
-    """Run in an empty folder with an empty cache."""
-    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'cache'))
-    folder = tmp_path / 'work'
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    return folder
+pytestmark = pytest.mark.usefixtures('own_folder')
 
 
 def changed_case(old: str, new: str) -> str:

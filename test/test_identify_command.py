@@ -20,13 +20,7 @@ KEYS = {'fit', 'fit_fresh', 'poles_hz', 'poles_damping', 'singular_values', 'spe
         'order', 'dt', 'seconds'}
 
 
-@pytest.fixture(autouse=True)
-def own_folder(tmp_path, monkeypatch):
-    """Run in an empty folder with an empty cache."""
-    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'cache'))
-    folder = tmp_path / 'work'
-    folder.mkdir()
-    monkeypatch.chdir(folder)
+pytestmark = pytest.mark.usefixtures('own_folder')
 
 
 @pytest.fixture

@@ -29,13 +29,7 @@ VARY = ['--vary', f'{ANGLE}=2.0,4.0', '--vary', f'{VOLTAGE}=0.0,1400.0']    # sl
 PATIENCE = 300.0
 
 
-@pytest.fixture(autouse=True)
-def own_folder(tmp_path, monkeypatch):
-    """Run in an empty folder with an empty cache."""
-    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'cache'))
-    folder = tmp_path / 'work'
-    folder.mkdir()
-    monkeypatch.chdir(folder)
+pytestmark = pytest.mark.usefixtures('own_folder')
 
 
 @pytest.fixture(scope='module')

@@ -33,8 +33,7 @@ class Controlled:
     """``duration`` s from the rest state under ``settings``, without them at the V^2 of rest.
 
     Averages are over the last ``averaged`` s. ``model`` names the run whose model a law is
-    designed on; ``passive`` the flight whose mean cambers replace those at rest as references,
-    for a wing that does not come to rest. ``reading`` names other gains, see `designed.readings`.
+    designed on, ``reading`` other gains, see `designed.readings`.
     """
 
     case: str                       # YAML
@@ -42,13 +41,12 @@ class Controlled:
     duration: float
     averaged: float
     model: str = ''
-    passive: str = ''
     reading: str = ''
 
     @property
     def needs(self) -> tuple[str, ...]:
         """Names of the runs whose results it takes."""
-        return tuple(name for name in (self.model, self.passive) if name)
+        return (self.model,) if self.model else ()
 
     @property
     def cost(self) -> float:
@@ -60,7 +58,7 @@ class Controlled:
         """Fly; return the series (n,) of a trial and its figures."""
         case = case_of(self.case)
         built = build_wing(case, lambda done, total: tick(TRIM_SHARE * done / total))
-        identity = self._identity(built.identity, inputs)
+        identity = built.identity
         settings = self._settings(identity)
         model = design_of(inputs[self.model]) if self.model else None
         steps = round(self.duration / built.plant.dt)
@@ -81,13 +79,6 @@ class Controlled:
         if self.reading:
             return parameters.replace(settings, readings(settings, identity)[self.reading])
         return settings
-
-    def _identity(self, identity: Identity, inputs: Mapping[str, Result]) -> Identity:
-        if not self.passive:
-            return identity
-        flown = inputs[self.passive]
-        return dataclasses.replace(identity, camber_mean=float(flown['camber_mean'].mean()),
-                                   camber_max=float(flown['camber_max'].mean()))
 
 
 def _controller(settings: ControllerSettings | None, identity: Identity, model: Design | None,

@@ -232,5 +232,5 @@ def _shedding_control(engine: str, extent: Extent) -> dict[str, Run]:
     time = duration * convective_time(case_of(case))
     for target in extent.held:
         runs[f'alpha8/held {target:g}'] = Controlled(
-            case, _settings({'reference.target': target}), time, 0.6 * time, passive='shed')
+            case, _settings({'reference.target': target}), time, 0.6 * time)
     return runs

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_control.paper.result import Result
-from dewing_sim import spectrum
+from dewing_sim import spectrum, wing
 from dewing_sim.verification.signals import Mean, block_mean
 
 BLOCKS = 8
@@ -39,20 +39,13 @@ def shapes(flight: Result) -> np.ndarray:
 def peak(flight: Result) -> Peak:
     """Return where the mean shape is highest; errors from the mean shapes of blocks."""
     drawn = shapes(flight)
-    whole = _peak(drawn.mean(axis=0))
+    whole = wing.peak(STATIONS, drawn.mean(axis=0))
     if len(drawn) < 2 * BLOCKS:
         return Peak(Mean(whole[0], 0.0), Mean(whole[1], 0.0))
-    parts = np.array([_peak(part.mean(axis=0)) for part in np.array_split(drawn, BLOCKS)])
+    parts = np.array([wing.peak(STATIONS, part.mean(axis=0))
+                      for part in np.array_split(drawn, BLOCKS)])
     errors = parts.std(axis=0, ddof=1) / np.sqrt(BLOCKS)
     return Peak(Mean(whole[0], float(errors[0])), Mean(whole[1], float(errors[1])))
-
-
-def _peak(shape: np.ndarray) -> tuple[float, float]:
-    k = int(np.clip(np.argmax(shape), 1, len(shape) - 2))
-    curvature, slope, height = np.polyfit(STATIONS[k - 1:k + 2] - STATIONS[k],
-                                          shape[k - 1:k + 2], 2)
-    offset = -0.5 * slope / curvature
-    return float(height + 0.5 * slope * offset), float(STATIONS[k] + offset)
 
 
 def lines(flight: Result, name: str = 'cl', most: int = 6) -> list[float]:
