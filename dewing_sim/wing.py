@@ -118,14 +118,14 @@ class Wing:
         chord = self.scales.length
         loads = self.fluid.loads(state.flow)
         x, y = self.membrane.surface(state.motion.position).T
-        peak, peak_x = _peak(x, y)
+        camber, place = peak(x, y)
         sheet = self.membrane.settled(state.motion).respond(state.motion.position, state.v_squared)
         centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
         return Outputs(
             time=state.step * self.dt, v_squared=state.v_squared,
             cl=loads.cl, cd=loads.cd, cm=loads.cm,
             camber_mean=chord * float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x))),
-            camber_max=chord * peak, camber_max_position=peak_x,
+            camber_max=chord * camber, camber_max_position=place,
             tension=self.scales.tension * float(sheet.tension.mean()),
             electric_field=math.sqrt(state.v_squared) / (chord * float(sheet.thickness.min())),
             coupling_iterations=state.iterations,
@@ -139,7 +139,7 @@ class Wing:
         return self.case.flow.dynamic_pressure * self.scales.length**2 / (8.0 * tension)
 
 
-def _peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+def peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     """Return the largest deflection and its place, by a parabola through three nodes.
 
     A membrane that bends down everywhere is highest at an edge.

@@ -9,9 +9,9 @@ import numpy as np
 
 from dewing_sim import parameters, spectrum
 from dewing_sim.verification.rigid_flow import step_cost
-from dewing_sim.verification.signals import block_mean
+from dewing_sim.verification.signals import Mean, block_mean
 from dewing_sim.verification.study import Check, Study
-from dewing_sim.wing import Wing
+from dewing_sim.wing import Wing, peak
 
 STUDIES_4 = 'finite-volume and conformal studies, 0.3948 and 0.393'
 STUDIES_8 = 'finite-volume and conformal studies'
@@ -19,18 +19,32 @@ STUDIES_LINES = f'{STUDIES_8}: 23.6-24.8, 47-49.4, 71-74'
 ESTIMATE = 'estimate from ideal flow, which overrates the lift of camber'
 LINES = (24.2, 48.2, 72.5)          # Hz, found by the studies within 1.5 Hz
 SHOWN = 0.2                         # s of the figure
+SAMPLE, BLOCKS = 10, 8
 LIGHT = 33.0                        # kg/m^3, mass ratio 0.03
 
 
 @dataclass(frozen=True)
 class WingResult:
-    """Outputs in time (steps,): coefficients, y* = camber / y_ref and its place; y_ref in m."""
+    """Outputs in time (steps,): coefficients, y* = camber / y_ref and its place; y_ref in m.
+
+    ``shape`` (2, samples, nodes) is x/c and y/y_ref of the membrane every `SAMPLE` steps.
+    """
 
     dt: float                       # s
     cl: np.ndarray
     y_star: np.ndarray
     place: np.ndarray
+    shape: np.ndarray
     y_ref: float
+
+    def mean_peak(self) -> tuple[Mean, Mean]:
+        """Return the largest deflection of the mean shape in y_ref and its x/c."""
+        x, y = self.shape
+        whole = peak(x.mean(axis=0), y.mean(axis=0))
+        parts = [peak(part_x.mean(axis=0), part_y.mean(axis=0)) for part_x, part_y
+                 in zip(np.array_split(x, BLOCKS), np.array_split(y, BLOCKS))]
+        errors = np.std(parts, axis=0, ddof=1) / np.sqrt(BLOCKS)
+        return Mean(whole[0], errors[0]), Mean(whole[1], errors[1])
 
 
 @dataclass(frozen=True)
@@ -56,13 +70,16 @@ class WingRun:
         """Trim, then march."""
         wing = Wing(parameters.load(self.case, changes=self._changes))
         state = wing.rest()
-        rows = [_row(wing.observe(state))]
-        for _ in range(round(self.duration * wing.scales.time / wing.dt)):
-            state = wing.step(state, 0.0)
-            rows.append(_row(wing.observe(state)))
-        cl, camber, place = np.array(rows).T
-        return WingResult(wing.dt, cl, camber / wing.reference_deflection, place,
-                          wing.reference_deflection)
+        y_ref = wing.reference_deflection
+        rows, shapes = [], []
+        for step in range(1 + round(self.duration * wing.scales.time / wing.dt)):
+            if step:
+                state = wing.step(state, 0.0)
+            outputs = wing.observe(state)
+            rows.append((outputs.cl, outputs.camber_max / y_ref, outputs.camber_max_position))
+            if step % SAMPLE == 0:
+                shapes.append((outputs.x / wing.scales.length, outputs.y / y_ref))
+        return WingResult(wing.dt, *np.array(rows).T, np.array(shapes).swapaxes(0, 1), y_ref)
 
     @property
     def _changes(self) -> dict[str, object]:
@@ -72,10 +89,6 @@ class WingRun:
         if self.dt:
             changes['numerics.time_step'] = self.dt
         return changes
-
-
-def _row(outputs) -> tuple[float, float, float]:
-    return outputs.cl, outputs.camber_max, outputs.camber_max_position
 
 
 def runs(engine: str, quick: bool) -> dict[str, WingRun]:
@@ -143,13 +156,16 @@ def _alpha8(engine: str, name: str, result: WingResult) -> list[Check]:
     """Judge the shipped case; with another time step the values are reported."""
     judged = name == 'paper_alpha8'
     found = []
-    for quantity, values, reference, gate, scale in (
-            ('mean Cl', result.cl, 0.906, 0.02, None),
-            ('mean y*', result.y_star, 0.99, 0.02, None),
-            ('x/c of the largest camber', result.place, 0.43, 0.02, None)):
-        mean = block_mean(values)
+    height, place = result.mean_peak()
+    for quantity, mean, reference in (('mean Cl', block_mean(result.cl), 0.906),
+                                      ('largest y* of the mean shape', height, 0.99),
+                                      ('x/c of it', place, 0.43)):
         found.append(Check(f'{name}: {quantity}', engine, mean.value, reference, STUDIES_8,
-                           gate if judged else None, scale, mean.error))
+                           0.02 if judged else None, None, mean.error))
+    for quantity, mean in (('mean of the largest y*', block_mean(result.y_star)),
+                           ('mean of its x/c', block_mean(result.place))):
+        found.append(Check(f'{name}: {quantity}', engine, mean.value, None, 'reported',
+                           error=mean.error))
     found.append(Check(f'{name}: rms of Cl', engine, result.cl.std(), None, 'reported'))
     return [*found, *_lines(engine, f'{name}: line of Cl', result.cl, result.dt),
             *_lines(engine, f'{name}: line of y*', result.y_star, result.dt)]
@@ -185,8 +201,10 @@ STUDY = Study(
     'coupled', 'Coupled wings',
     'The shipped cases from their rest states. At 8 degrees means are over 60 c/U with the '
     'standard error from eight blocks; the lines are all peaks of the windowed spectrum above a '
-    "thousandth of the strongest, six at most. Twice the time step, the paper's, is reported "
-    'beside: on the standard finite-volume grid it admits a shedding of doubled period with 5 % '
-    'more lift, which neither half of it nor the conformal engine shows. The paper prints 0.396, '
+    "thousandth of the strongest, six at most. Largest y* and its place are those of the mean "
+    "shape, which the paper's Fig. 2 shows; means of the momentary maximum are reported. Twice "
+    "the time step, the paper's, is reported beside: the standard finite-volume grid is close to "
+    'a bifurcation, with a shedding of doubled period and 4 to 5 % more lift at 1e-4 s and also '
+    'at 2.5e-5 s, hardly at 5e-5 s, and never on the conformal engine. The paper prints 0.396, '
     '0.33, 0.40 at 4 degrees; 0.83, 0.85 and 26 and 51 Hz at 8 degrees.',
     runs, checks, draw)
