@@ -22,7 +22,7 @@ def _visit_inline(translator, node):
 
 
 def _visit_block(translator, node):
-    translator.body.append(f'<div class="math" style="overflow-x: auto">'
+    translator.body.append('<div class="math" style="overflow: auto hidden; padding: 0.3em 0">'
                            f'{_mathml(node, block=True)}</div>')
     _skip()
 
