@@ -151,7 +151,7 @@ def loop(name: str) -> Result:
     """Return a closed loop that settles at its target."""
     time = 1.0e-4 * np.arange(1, 2501)
     target = 1.1 if name.endswith('open_loop') is False else 1.0
-    camber = target + 0.01 * np.sin(20.0 * np.pi * time)
+    camber = target + 0.01 * (1.0 - time) * np.sin(20.0 * np.pi * time)
     flat = np.ones(len(time))
     values = {'target': target, 'dt': 1.0e-4, 'averaged': 0.1, 'v_slack': 1300.0,
               'camber_reference': 2.0e-5, 'camber_mean': target, 'camber_amplitude': 0.01,
