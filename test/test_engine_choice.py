@@ -30,13 +30,21 @@ def test_the_conformal_engine_is_taken_where_it_has_been_verified():
     ({'reynolds': 50.0}, 'a Reynolds number of 50 is outside 100 to 10000'),
     ({'reynolds': 2.0e4}, 'a Reynolds number of 2e.04'),
     ({'alpha': math.radians(-14.0)}, 'an? angle of attack in deg of 14 is outside 0 to 12'),
-    ({'dt': 0.05}, 'a time step in c/U of 0.05 is outside 0 to 0.025'),
+    ({'dt': 0.05}, 'a time step in c/U of 0.05 is outside 0 to 0.0205'),
 ])
 def test_elsewhere_the_finite_volumes_are(change, reason):
     demand = dataclasses.replace(ORDINARY, **change)
     assert choose('auto', demand) == 'finite_volume'
     with pytest.raises(BadInput, match=f'one of the conformal engine, for which {reason}'):
         choose('auto', dataclasses.replace(demand, grid='realtime'))
+
+
+def test_finer_grids_of_the_conformal_engine_take_shorter_steps():
+    taken = {grid: [choose('auto', dataclasses.replace(ORDINARY, grid=grid, dt=dt))
+                    for dt in (0.004, 0.012)] for grid in ('fast', 'standard', 'fine')}
+    assert taken == {'fast': ['conformal', 'conformal'],
+                     'standard': ['conformal', 'finite_volume'],
+                     'fine': ['conformal', 'finite_volume']}
 
 
 def test_a_gust_asks_for_the_conformal_engine_whatever_the_case():
