@@ -4,6 +4,7 @@
 
 from typing import Any, Iterator
 
+from dewing_control.design import Design
 from dewing_control.laws import law
 from dewing_control.settings import ControllerSettings
 from dewing_control.supervisor import Controller, Supervisor
@@ -11,9 +12,13 @@ from dewing_sim.identity import Identity
 from dewing_sim.plant import Measurement, Outputs, Plant, rollout
 
 
-def controller(settings: ControllerSettings, identity: Identity) -> Supervisor:
-    """Return the supervised controller that ``settings`` describe for a plant."""
-    return Supervisor(law(settings, identity), settings.command.period_steps,
+def controller(settings: ControllerSettings, identity: Identity, model: Design | None = None,
+               ) -> Supervisor:
+    """Return the supervised controller that ``settings`` describe for a plant, as nodes run it.
+
+    ``model`` is as in `law`.
+    """
+    return Supervisor(law(settings, identity, model), settings.command.period_steps,
                       settings.command.hold_steps)
 
 

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any, Iterator, Sequence
 
-from dewing_control import trial
-from dewing_control.laws import law
+from dewing_control import closed_loop, trial
 from dewing_control.scenarios import CONTROLLERS, SCENARIOS, Scenario, TwoToneWing
 from dewing_control.settings import ControllerSettings
-from dewing_control.supervisor import Controller, Supervisor
+from dewing_control.supervisor import Controller
 from dewing_control.tuning import printed_gains
 from dewing_sim import parameters
 from dewing_sim.build import Built, build_wing
@@ -63,8 +62,7 @@ def controller(name: str, plan: Plan, scenario: Scenario, identity: Identity,
         changes['pid.tracking_time'] = printed['kp'] / printed['ki']
     settings = parameters.replace(plan.settings, changes)
     known = dataclasses.replace(identity, v_squared_slack=plan.nominal.v_squared_slack)
-    return Supervisor(law(settings, known), settings.command.period_steps,
-                      settings.command.hold_steps)
+    return closed_loop.controller(settings, known)
 
 
 def run_scenario(plan: Plan, name: str, names: Sequence[str] = CONTROLLERS,

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 
 from dewing_control import trial
-from dewing_control.closed_loop import closed_loop
+from dewing_control.closed_loop import closed_loop, controller
 from dewing_control.design import Design
-from dewing_control.laws import law
 from dewing_control.settings import ControllerSettings
-from dewing_control.supervisor import Supervisor
 from dewing_control.tuning import FREQUENCY, LOAD
 from dewing_sim.build import Built
 from dewing_sim.identity import Identity
@@ -21,16 +19,10 @@ from dewing_sim.reduced import Reduced
 AVERAGED = 0.1              # s at the end of a run: one period of the disturbance
 
 
-def supervised(settings: ControllerSettings, identity: Identity, model: Design) -> Supervisor:
-    """Return the law of ``settings`` designed on ``model``, as the node would run it."""
-    return Supervisor(law(settings, identity, model), settings.command.period_steps,
-                      settings.command.hold_steps)
-
-
 def on_wing(settings: ControllerSettings, built: Built, model: Design, duration: float,
             ) -> tuple[trial.Trial, dict[str, Any]]:
     """Return run and figures of the law on the wing ``built``."""
-    run = trial.run(built.plant, built.rest, supervised(settings, built.identity, model),
+    run = trial.run(built.plant, built.rest, controller(settings, built.identity, model),
                     round(duration / built.plant.dt), built.plant.case.membrane,
                     passive=built.identity.camber_mean)
     figures = trial.figures(run, settings.reference.target, built.identity.v_squared_max,
@@ -43,7 +35,7 @@ def on_model(settings: ControllerSettings, identity: Identity, reduced: Reduced,
     """Return the camber (n,) in a_ref of the law on the model disturbed as in Fig. 5."""
     plant = dataclasses.replace(reduced, disturbance=-LOAD * reduced.operating_outputs,
                                 disturbance_frequency=FREQUENCY)
-    loop = closed_loop(plant, plant.rest(), supervised(settings, identity, model),
+    loop = closed_loop(plant, plant.rest(), controller(settings, identity, model),
                        round(duration / plant.dt))
     row = reduced.output_names.index(settings.reference.output)
     passive = reduced.operating_outputs[row]

@@ -55,9 +55,7 @@ def _march(wing: Wing, state: State, duration: float, progress=None):
     total = round(duration * wing.scales.time / wing.dt)
     samples = []
     for step in range(1, total + 1):
-        coupled = wing.couple(state, state.v_squared, 0.0, free)
-        state = State(0, state.v_squared, coupled.flow, coupled.motion, coupled.iterations,
-                      coupled.residual)
+        state = State.after(0, state.v_squared, wing.couple(state, state.v_squared, 0.0, free))
         if step % SAMPLE == 0 or step == total:
             samples.append(_sample(wing, state))
             if progress:

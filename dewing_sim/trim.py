@@ -10,6 +10,7 @@ circulation; from there to ``trim_time`` the motion is the true one.
 import hashlib
 import os
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -52,11 +53,9 @@ def march(wing: Wing, progress=None) -> State:
         quasi_steady = step * dt < QUASI_STEADY
         coupled = wing.couple(state, v_squared, 0.0, overdamped if quasi_steady else free,
                               damping if quasi_steady else 0.0)
-        flow = coupled.flow
+        state = State.after(0, v_squared, coupled)
         if step * dt < ADAPTATION_TIME:
-            flow = adapt_circulation(wing.fluid, flow, dt)
-        state = State(0, v_squared, flow, coupled.motion, coupled.iterations, coupled.residual,
-                      coupled.still_jumps)
+            state = replace(state, flow=adapt_circulation(wing.fluid, state.flow, dt))
         if progress and (step + 1) % PROGRESS_STEPS == 0:
             progress(step + 1, total)
     return state
@@ -91,8 +90,9 @@ def solver_sources() -> bytes:
     """Return the text of the modules that compute a step and the rest state."""
     package = Path(__file__).parent
     sources = [*package.glob('fluid/**/*.py'), *package.glob('structure/*.py'),
-               *(package / name for name in ('interface.py', 'passive.py', 'plate.py',
-                                             'scales.py', 'trim.py', 'wing.py'))]
+               *(package / f'{name}.py' for name in (
+                   'amplifier', 'disturbance', 'encounter', 'engine_choice', 'interface',
+                   'passive', 'plate', 'scales', 'trim', 'wing'))]
     return b''.join(source.read_bytes() for source in sorted(sources))
 
 

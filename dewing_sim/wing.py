@@ -40,6 +40,12 @@ class State:
     residual: float = 0.0           # its last relative change of shape
     still_jumps: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))   # see `Coupled`
 
+    @classmethod
+    def after(cls, step: int, v_squared: float, coupled: interface.Coupled) -> 'State':
+        """Return the state at the end of a coupled step."""
+        return cls(step, v_squared, coupled.flow, coupled.motion, coupled.iterations,
+                   coupled.residual, coupled.still_jumps)
+
 
 class Wing:
     """An immutable membrane wing in a flow, a `plant.Plant`."""
@@ -86,8 +92,7 @@ class Wing:
         pressure = 0.5 * wall_pressure(self.case.disturbance, time)     # q is rho U^2 / 2
         onset = None if self.encounter.is_steady else self.encounter.at(time / self.scales.time)
         coupled = self.couple(state, v_squared, pressure, self._operator, onset=onset)
-        return State(state.step + 1, v_squared, coupled.flow, coupled.motion,
-                     coupled.iterations, coupled.residual, coupled.still_jumps)
+        return State.after(state.step + 1, v_squared, coupled)
 
     def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
                damping: float = 0.0, onset: Onset | None = None) -> interface.Coupled:

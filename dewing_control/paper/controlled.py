@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from typing import Mapping
 
 from dewing_control import trial
-from dewing_control.design import Design
-from dewing_control.laws import law
+from dewing_control.closed_loop import controller
 from dewing_control.paper.designed import design_of, readings
 from dewing_control.paper.flight import case_of, cost
 from dewing_control.paper.result import Result, Tick
 from dewing_control.paper.watched import TRIM_SHARE, Watched
 from dewing_control.settings import ControllerSettings
-from dewing_control.supervisor import Supervisor
 from dewing_sim import parameters
 from dewing_sim.build import build_wing
 from dewing_sim.identity import Identity
@@ -63,7 +61,8 @@ class Controlled:
         model = design_of(inputs[self.model]) if self.model else None
         steps = round(self.duration / built.plant.dt)
         run = trial.run(Watched(built.plant, steps, tick), built.rest,
-                        _controller(settings, identity, model), steps, case.membrane,
+                        controller(settings, identity, model) if settings else None,
+                        steps, case.membrane,
                         passive=identity.camber_mean)
         target = settings.reference.target if settings else 1.0
         values = trial.figures(run, target, _limit(case, settings),
@@ -79,14 +78,6 @@ class Controlled:
         if self.reading:
             return parameters.replace(settings, readings(settings, identity)[self.reading])
         return settings
-
-
-def _controller(settings: ControllerSettings | None, identity: Identity, model: Design | None,
-                ) -> Supervisor | None:
-    if settings is None:
-        return None
-    return Supervisor(law(settings, identity, model), settings.command.period_steps,
-                      settings.command.hold_steps)
 
 
 def _limit(case: Case, settings: ControllerSettings | None) -> float:

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_control.paper.result import Result
-from dewing_sim import spectrum, wing
-from dewing_sim.verification.signals import Mean, block_mean
+from dewing_sim import spectrum
+from dewing_sim.verification.signals import Mean, block_mean, mean_peak
 
-BLOCKS = 8
 FIRST_MODE = 72.4           # Hz, of the paper's membrane in still air: strip in potential flow
 SHEDDING = (0.45, 0.85)     # Strouhal numbers f c/U between which a wing like this one sheds
 STATIONS = np.linspace(0.0, 1.0, 101)       # x/c at which shapes are compared
@@ -39,13 +38,7 @@ def shapes(flight: Result) -> np.ndarray:
 def peak(flight: Result) -> Peak:
     """Return where the mean shape is highest; errors from the mean shapes of blocks."""
     drawn = shapes(flight)
-    whole = wing.peak(STATIONS, drawn.mean(axis=0))
-    if len(drawn) < 2 * BLOCKS:
-        return Peak(Mean(whole[0], 0.0), Mean(whole[1], 0.0))
-    parts = np.array([wing.peak(STATIONS, part.mean(axis=0))
-                      for part in np.array_split(drawn, BLOCKS)])
-    errors = parts.std(axis=0, ddof=1) / np.sqrt(BLOCKS)
-    return Peak(Mean(whole[0], float(errors[0])), Mean(whole[1], float(errors[1])))
+    return Peak(*mean_peak(np.broadcast_to(STATIONS, drawn.shape), drawn))
 
 
 def lines(flight: Result, name: str = 'cl', most: int = 6) -> list[float]:

@@ -9,9 +9,9 @@ import numpy as np
 
 from dewing_sim import parameters, spectrum
 from dewing_sim.verification.rigid_flow import step_cost
-from dewing_sim.verification.signals import Mean, block_mean
+from dewing_sim.verification.signals import block_mean, mean_peak
 from dewing_sim.verification.study import Check, Study
-from dewing_sim.wing import Wing, peak
+from dewing_sim.wing import Wing
 
 STUDIES_4 = 'finite-volume and conformal studies, 0.3948 and 0.393'
 STUDIES_8 = 'finite-volume and conformal studies'
@@ -19,7 +19,7 @@ STUDIES_LINES = f'{STUDIES_8}: 23.6-24.8, 47-49.4, 71-74'
 ESTIMATE = 'estimate from ideal flow, which overrates the lift of camber'
 LINES = (24.2, 48.2, 72.5)          # Hz, found by the studies within 1.5 Hz
 SHOWN = 0.2                         # s of the figure
-SAMPLE, BLOCKS = 10, 8
+SAMPLE = 10
 LIGHT = 33.0                        # kg/m^3, mass ratio 0.03
 
 
@@ -36,15 +36,6 @@ class WingResult:
     place: np.ndarray
     shape: np.ndarray
     y_ref: float
-
-    def mean_peak(self) -> tuple[Mean, Mean]:
-        """Return the largest deflection of the mean shape in y_ref and its x/c."""
-        x, y = self.shape
-        whole = peak(x.mean(axis=0), y.mean(axis=0))
-        parts = [peak(part_x.mean(axis=0), part_y.mean(axis=0)) for part_x, part_y
-                 in zip(np.array_split(x, BLOCKS), np.array_split(y, BLOCKS))]
-        errors = np.std(parts, axis=0, ddof=1) / np.sqrt(BLOCKS)
-        return Mean(whole[0], errors[0]), Mean(whole[1], errors[1])
 
 
 @dataclass(frozen=True)
@@ -156,7 +147,7 @@ def _alpha8(engine: str, name: str, result: WingResult) -> list[Check]:
     """Judge the shipped case; with another time step the values are reported."""
     judged = name == 'paper_alpha8'
     found = []
-    height, place = result.mean_peak()
+    height, place = mean_peak(*result.shape)
     for quantity, mean, reference in (('mean Cl', block_mean(result.cl), 0.906),
                                       ('largest y* of the mean shape', height, 0.99),
                                       ('x/c of it', place, 0.43)):

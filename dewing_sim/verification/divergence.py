@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Static divergence of a slack-tensioned membrane, in the trend towards ideal flow."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,8 +60,8 @@ def static_deflection(wing: Wing, duration: float) -> float:
     operator, state = wing.operator(damping), trim.start(wing)
     for _ in range(round(duration * wing.scales.time / wing.dt)):
         coupled = wing.couple(state, 0.0, 0.0, operator, damping)
-        flow = adapt_circulation(wing.fluid, coupled.flow, wing.fluid.dt)
-        state = State(0, 0.0, flow, coupled.motion, still_jumps=coupled.still_jumps)
+        state = replace(State.after(0, 0.0, coupled), flow=adapt_circulation(
+            wing.fluid, coupled.flow, wing.fluid.dt))
     return wing.observe(state).camber_max / wing.scales.length
 
 

@@ -7,6 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim import spectrum
+from dewing_sim.wing import peak
+
+BLOCKS = 8              # of a time series, for the error of its mean
 
 
 class Harmonics(NamedTuple):
@@ -53,7 +56,21 @@ def _fit(signal: np.ndarray, dt: float, frequency: float, count: int) -> tuple[n
     return np.hypot(cosine, sine), float(residual @ residual)
 
 
-def block_mean(signal: np.ndarray, blocks: int = 8) -> Mean:
+def mean_peak(x: np.ndarray, y: np.ndarray) -> tuple[Mean, Mean]:
+    """Return height and place of the highest point of the mean of shapes (samples, nodes).
+
+    The standard errors are from the mean shapes of `BLOCKS` blocks, 0 for too few samples.
+    """
+    height, place = peak(x.mean(axis=0), y.mean(axis=0))
+    if len(y) < 2 * BLOCKS:
+        return Mean(height, 0.0), Mean(place, 0.0)
+    parts = [peak(part_x.mean(axis=0), part_y.mean(axis=0)) for part_x, part_y
+             in zip(np.array_split(x, BLOCKS), np.array_split(y, BLOCKS))]
+    errors = np.std(parts, axis=0, ddof=1) / np.sqrt(BLOCKS)
+    return Mean(height, float(errors[0])), Mean(place, float(errors[1]))
+
+
+def block_mean(signal: np.ndarray, blocks: int = BLOCKS) -> Mean:
     """Return the mean and its standard error from the scatter of the means of equal blocks."""
     length = len(signal) // blocks
     means = np.reshape(signal[len(signal) - blocks * length:], (blocks, length)).mean(axis=1)
