@@ -21,7 +21,8 @@ from dewing_sim.structure.band import LowRank
 from dewing_sim.structure.dynamics import Motion, Operator, Structure
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
-EXTRAPOLATION = ((1.0,), (2.0, -1.0), (3.0, -3.0, 1.0))     # from one, two or three past values
+EXTRAPOLATION = tuple(map(np.array, (       # from one, two or three past values
+    (1.0,), (2.0, -1.0), (3.0, -3.0, 1.0))))
 # Last correction of the membrane in chords, for a guess and in a pass; the next is far smaller.
 FORESEEN, ACCURACY = 1.0e-5, 1.0e-8
 
@@ -65,7 +66,7 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
 
     position = motion.predict(dt)
     if len(still_jumps):
-        jump = np.dot(EXTRAPOLATION[len(still_jumps) - 1], still_jumps)
+        jump = EXTRAPOLATION[len(still_jumps) - 1] @ still_jumps
         try:
             position = moved_under(jump, coasting, position, FORESEEN)
         except RunFailed:
@@ -90,22 +91,23 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
 
 def _coasting(fluid: Fluid, structure: Structure, motion: Motion) -> np.ndarray:
     """Return the column velocities (columns,) of a step without acceleration."""
-    now, before = (
-        column_velocity(fluid.columns, structure.surface(position), structure.surface(velocity))
-        for position, velocity in ((motion.position, motion.velocity),
-                                   (motion.position_before, motion.velocity_before)))
-    return (4.0 * now - before) / 3.0
+    return _coasting_velocity(fluid.columns, *map(structure.surface, (
+        motion.position, motion.velocity, motion.position_before, motion.velocity_before)))
 
 
-def shape_change(after: np.ndarray, before: np.ndarray) -> float:
+@numba.njit(cache=True)
+def shape_change(after, before):
     """Return the largest change of height relative to the largest deflection."""
-    return float(np.abs(after - before).max() / max(np.abs(after).max(), FLAT))
+    change, deflection = 0.0, FLAT
+    for i in range(after.size):
+        change = max(change, abs(after[i] - before[i]))
+        deflection = max(deflection, abs(after[i]))
+    return change / deflection
 
 
 def wall_of(columns: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> Wall:
     """Return the wall that the flow sees of nodes (n + 1, 2) and their velocities."""
-    height = np.interp(columns, position[:, 0], position[:, 1])
-    return Wall(height, column_velocity(columns, position, velocity))
+    return Wall(*_wall(columns, position, velocity))
 
 
 @dataclass(frozen=True)
@@ -152,7 +154,9 @@ def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
 @numba.njit(cache=True)
 def column_velocity(columns, position, velocity):
     """Return the column averages of Y_t = v_y - Y_x v_x, the rise of the wall at fixed x."""
-    w = np.zeros(columns.size - 1)
+    w = np.empty(columns.size - 1)
+    for column in range(w.size):
+        w[column] = 0.0
     element, column = 0, 0
     while element < position.shape[0] - 1 and column < w.size:
         x0, x1 = position[element, 0], position[element + 1, 0]
@@ -176,7 +180,9 @@ def column_velocity(columns, position, velocity):
 @numba.njit(cache=True)
 def nodal_force(columns, position, jump):
     """Return the nodal forces (n + 1, 2) of column pressure jumps, normal to the elements."""
-    force = np.zeros(position.shape)
+    force = np.empty(position.shape)
+    for node in range(position.shape[0]):
+        force[node, 0], force[node, 1] = 0.0, 0.0
     element, column = 0, 0
     while element < position.shape[0] - 1 and column < jump.size:
         x0, x1 = position[element, 0], position[element + 1, 0]
@@ -200,5 +206,44 @@ def nodal_force(columns, position, jump):
 @numba.njit(cache=True)
 def _load(columns, position, velocity, jump, reference, resistance, wall_pressure):
     """Return the nodal forces of a jump that acts if the columns move with ``reference``."""
-    change = column_velocity(columns, position, velocity) - reference
-    return nodal_force(columns, position, jump - resistance @ change + wall_pressure)
+    change = column_velocity(columns, position, velocity)
+    total = np.empty(jump.size)
+    for i in range(jump.size):
+        change[i] -= reference[i]
+        total[i] = jump[i] + wall_pressure
+    _subtract_product(resistance, change, total)
+    return nodal_force(columns, position, total)
+
+
+@numba.njit(cache=True, fastmath={'reassoc', 'nsz'})
+def _subtract_product(matrix, vector, result):
+    for i in range(result.size):
+        product = 0.0
+        for j in range(vector.size):
+            product += matrix[i, j] * vector[j]
+        result[i] -= product
+
+
+@numba.njit(cache=True)
+def _wall(columns, position, velocity):
+    """Return the heights at the column faces, those of the edges beyond, and their velocities."""
+    height = np.empty(columns.size)
+    element, last = 0, position.shape[0] - 2
+    for i in range(columns.size):
+        while element < last and position[element + 1, 0] < columns[i]:
+            element += 1
+        x0, x1 = position[element, 0], position[element + 1, 0]
+        share = min(max((columns[i] - x0) / (x1 - x0), 0.0), 1.0)
+        height[i] = position[element, 1] + share * (position[element + 1, 1]
+                                                    - position[element, 1])
+    return height, column_velocity(columns, position, velocity)
+
+
+@numba.njit(cache=True)
+def _coasting_velocity(columns, position, velocity, position_before, velocity_before):
+    """Return (4 w_n - w_n-1) / 3 of the columns."""
+    w = column_velocity(columns, position, velocity)
+    before = column_velocity(columns, position_before, velocity_before)
+    for column in range(w.size):
+        w[column] = (4.0 * w[column] - before[column]) / 3.0
+    return w

@@ -129,7 +129,7 @@ class Wing:
         return Outputs(
             time=state.step * self.dt, v_squared=state.v_squared,
             cl=loads.cl, cd=loads.cd, cm=loads.cm,
-            camber_mean=chord * float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x))),
+            camber_mean=chord * float(0.5 * (y[1:] + y[:-1]) @ (x[1:] - x[:-1])),
             camber_max=chord * camber, camber_max_position=place,
             tension=self.scales.tension * float(sheet.tension.mean()),
             electric_field=math.sqrt(state.v_squared) / (chord * float(sheet.thickness.min())),
@@ -152,11 +152,13 @@ def peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     k = int(np.argmax(y))
     if k in (0, len(y) - 1):
         return float(y[k]), float(x[k])
-    curvature, slope, height = np.polyfit(x[k - 1:k + 2] - x[k], y[k - 1:k + 2], 2)
-    if curvature >= 0.0:
+    before, after = float(x[k] - x[k - 1]), float(x[k + 1] - x[k])
+    rise, fall = float(y[k] - y[k - 1]) / before, float(y[k + 1] - y[k]) / after
+    if fall >= rise:
         return float(y[k]), float(x[k])
-    offset = -0.5 * slope / curvature
-    return float(height + 0.5 * slope * offset), float(x[k] + offset)
+    slope = (rise * after + fall * before) / (before + after)
+    offset = 0.5 * slope * (before + after) / (rise - fall)
+    return float(y[k]) + 0.5 * slope * offset, float(x[k]) + offset
 
 
 def _require_tension(case: Case, slack_voltage: float) -> None:

@@ -7,6 +7,7 @@ to the few columns of the flow. Sherman, Morrison and Woodbury's formula joins t
 written out, so that no BLAS or thread changes a bit of the result.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numba
@@ -24,73 +25,65 @@ def full(band):
     return matrix
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model='numpy')
 def factorise(band):
-    """Return L below and D on the diagonal of L D L^T in rows (m, w + 1) by columns of L."""
+    """Return L D L^T in rows (m, w + 1) by columns of L: 1 / D, then L below the diagonal."""
     width, m = band.shape[0] // 2, band.shape[1]
-    factors = np.ascontiguousarray(band[width:].T)
+    factors = np.empty((m, width + 1))
+    for column in range(m):
+        for i in range(width + 1):
+            factors[column, i] = band[width + i, column]
     for column in range(m):
         reach = min(width, m - 1 - column)
-        pivot = factors[column, 0]
+        factors[column, 0] = 1.0 / factors[column, 0]
         for i in range(1, reach + 1):
-            share = factors[column, i] / pivot
+            share = factors[column, i] * factors[column, 0]
             for k in range(i, reach + 1):
                 factors[column + i, k - i] -= share * factors[column, k]
         for i in range(1, reach + 1):
-            factors[column, i] /= pivot
+            factors[column, i] *= factors[column, 0]
     return factors
 
 
 @numba.njit(cache=True)
-def substitute(factors, right):
-    """Return the solutions (m, k) for the columns of ``right`` (m, k)."""
+def substitute(factors, rows):
+    """Replace each right-hand side in ``rows`` (k, m) by its solution."""
     m, width = factors.shape[0], factors.shape[1] - 1
-    solution = right.copy()
-    for column in range(m):
-        for i in range(1, min(width, m - 1 - column) + 1):
-            factor = factors[column, i]
-            for k in range(right.shape[1]):
-                solution[column + i, k] -= factor * solution[column, k]
-    for column in range(m - 1, -1, -1):
-        pivot = factors[column, 0]
-        for k in range(right.shape[1]):
-            solution[column, k] /= pivot
-        for i in range(1, min(width, m - 1 - column) + 1):
-            factor = factors[column, i]
-            for k in range(right.shape[1]):
-                solution[column, k] -= factor * solution[column + i, k]
-    return solution
+    for k in range(rows.shape[0]):
+        for column in range(m):
+            for i in range(1, min(width, m - 1 - column) + 1):
+                rows[k, column + i] -= factors[column, i] * rows[k, column]
+        for column in range(m - 1, -1, -1):
+            value = rows[k, column] * factors[column, 0]
+            for i in range(min(width, m - 1 - column), 0, -1):      # the latest result last
+                value -= factors[column, i] * rows[k, column + i]
+            rows[k, column] = value
 
 
 @numba.njit(cache=True)
-def substitute_one(factors, right):
-    """Return the solution (m,) for ``right`` (m,)."""
-    m, width = factors.shape[0], factors.shape[1] - 1
-    solution = right.copy()
-    for column in range(m):
-        value = solution[column]
-        for i in range(1, min(width, m - 1 - column) + 1):
-            solution[column + i] -= factors[column, i] * value
-    for column in range(m - 1, -1, -1):
-        value = solution[column] / factors[column, 0]
-        for i in range(1, min(width, m - 1 - column) + 1):
-            value -= factors[column, i] * solution[column + i]
-        solution[column] = value
-    return solution
-
-
-@numba.njit(cache=True)
-def _solve(factors, basis, answer, vector):
-    """Return x - answer^T basis^T x, with the solution x (m,) of the band alone."""
-    solution = substitute_one(factors, vector)
-    share = np.zeros(answer.shape[0])
-    for i in range(solution.size):
-        for k in range(share.size):
-            share[k] += basis[i, k] * solution[i]
+def _subtract_low_rank(row, column, value, answer, solution):
+    """Replace x, the only row of ``solution`` (1, m), by x - answer^T basis^T x."""
+    share = np.empty(answer.shape[0])
     for k in range(share.size):
-        for i in range(solution.size):
-            solution[i] -= answer[k, i] * share[k]
-    return solution
+        share[k] = 0.0
+    for entry in range(value.size):
+        share[column[entry]] += value[entry] * solution[0, row[entry]]
+    for k in range(share.size):
+        for i in range(solution.shape[1]):
+            solution[0, i] -= answer[k, i] * share[k]
+
+
+@numba.njit(cache=True)
+def _solve(factors, row, column, value, answer, residual):
+    """Replace ``residual`` (1, m) by the solution; return its largest entry, NaN if one is."""
+    substitute(factors, residual)
+    _subtract_low_rank(row, column, value, answer, residual)
+    largest = 0.0
+    for i in range(residual.shape[1]):
+        size = abs(residual[0, i])
+        if size > largest or math.isnan(size):
+            largest = size
+    return largest
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +104,9 @@ class Inverse:
     """The inverse of a symmetric band plus a multiple of a `LowRank`."""
 
     factors: np.ndarray
-    basis: np.ndarray           # (m, k)
+    row: np.ndarray             # of the entries of the basis (m, k) that are not zero
+    column: np.ndarray
+    value: np.ndarray
     answer: np.ndarray          # (k, m), of the low rank to what basis^T sees
 
     @classmethod
@@ -119,10 +114,12 @@ class Inverse:
         """Return the inverse of ``band`` (2 w + 1, m) + ``factor`` * ``low_rank``."""
         factors = factorise(band)
         basis, weight = low_rank.basis, factor * low_rank.weight
-        solved = substitute(factors, basis)
-        core = np.eye(len(weight)) + weight @ (basis.T @ solved)
-        answer = solved @ np.linalg.solve(core, weight)
-        return cls(factors, basis, np.ascontiguousarray(answer.T))
+        solved = np.array(basis.T, order='C')
+        substitute(factors, solved)
+        core = np.eye(len(weight)) + weight @ (solved @ basis).T
+        answer = np.linalg.solve(core, weight).T @ solved
+        row, column = np.nonzero(basis)
+        return cls(factors, row, column, basis[row, column], answer)
 
     def about(self, band: np.ndarray) -> 'Inverse':
         """Return the inverse for another ``band`` with the correction for the low rank as here.
@@ -131,6 +128,8 @@ class Inverse:
         """
         return replace(self, factors=factorise(band))
 
-    def __call__(self, vector: np.ndarray) -> np.ndarray:
-        """Return the product with ``vector`` (m,)."""
-        return _solve(self.factors, self.basis, self.answer, vector)
+    def __call__(self, vector: np.ndarray) -> tuple[np.ndarray, float]:
+        """Return the product with ``vector`` (m,) and the size of its largest entry."""
+        product = np.array(vector, ndmin=2, order='C')
+        size = _solve(self.factors, self.row, self.column, self.value, self.answer, product)
+        return product[0], size

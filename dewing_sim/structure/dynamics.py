@@ -10,6 +10,7 @@ With d positions, w velocities and kappa = 3 / (2 dt), on the free degrees of fr
 second order in dt and the scheme of the flow, so that both see the same wall velocity.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Callable, Protocol
 
@@ -111,10 +112,10 @@ def _band(structure: Structure, position: np.ndarray, v_squared: float, dt: floa
 @numba.njit(cache=True)
 def _imbalance(mass, velocity, now, before, dt, damping, internal, load):
     """Return M (a + damping w) + f_int - load, (nodes, 2)."""
-    result = np.empty_like(velocity)
+    result = np.empty(velocity.shape)
     for i in range(mass.size):
         for k in range(2):
-            rate = (3.0 * velocity[i, k] - 4.0 * now[i, k] + before[i, k]) / (2.0 * dt)
+            rate = (3.0 * velocity[i, k] - 4.0 * now[i, k] + before[i, k]) * (0.5 / dt)
             result[i, k] = (mass[i] * (rate + damping * velocity[i, k])
                             + internal[i, k] - load[i, k])
     return result
@@ -193,18 +194,20 @@ class Step:
 
     def _share(self, load: Load, start: np.ndarray, share: float) -> np.ndarray:
         """Return the position where ``share`` of the imbalance of the present one is gone."""
-        held = (1.0 - share) * self._residual(load, self.motion.position) if share < 1.0 else 0.0
+        held = (1.0 - share) * self._residual(load, self.motion.position) if share < 1.0 else None
         self._inverse = None
         return self._newton(load, start, held)
 
-    def _newton(self, load: Load, start: np.ndarray, held: float | np.ndarray = 0.0) -> np.ndarray:
-        """Return the position where the imbalance is ``held``."""
+    def _newton(self, load: Load, start: np.ndarray, held: np.ndarray | None = None) -> np.ndarray:
+        """Return the position where the imbalance is ``held`` (m,), by default zero."""
         position, before, previous = start, None, np.inf
         for iteration in range(ITERATIONS):
-            with np.errstate(invalid='ignore'):
-                residual = self._residual(load, position) - held
+            residual = self._residual(load, position)
+            if held is not None:
+                with np.errstate(invalid='ignore'):
+                    residual -= held
             correction, size = self._corrected(residual, position, before, previous)
-            if not np.isfinite(size):
+            if not math.isfinite(size):
                 raise Diverged(f'structure: non-finite residual or correction in iteration '
                                f'{iteration}; check the load or reduce the time step',
                                self.motion)
@@ -224,10 +227,8 @@ class Step:
         """Return the correction and its size, with a new tangent if the last one is stale."""
         moved = previous if before is not None else 0.0
         if self._inverse is not None and moved <= self.structure.linear_range:
-            correction = self._inverse(residual)
-            size = np.abs(correction).max()
+            correction, size = self._inverse(residual)
             if size <= max(previous / SHRINKAGE, self.accuracy):
                 return correction, size
         self._inverse = self._inverted(position, before)
-        correction = self._inverse(residual)
-        return correction, np.abs(correction).max()
+        return self._inverse(residual)

@@ -108,14 +108,13 @@ class Scheme:
             internal = self.mean_force(resting, structure.internal_force(position, v_squared))
             residual = (structure.mass[:, None] * self.mean_acceleration(start, end) + internal
                         - self.mean_force(start.load, end.load)).reshape(-1)[free]
-            correction = self._inverse(structure, position, v_squared, before)(residual)
+            correction, size = self._inverse(structure, position, v_squared, before)(residual)
             before, position = position, position.copy()
             position.reshape(-1)[free] -= correction
-            size = np.abs(correction).max() / structure.chord
-            if size <= tolerance:
+            if size <= tolerance * structure.chord:
                 return self.reached(start, position, load(position))
-        raise NotConverged(f'generalised alpha: largest correction {size:.3g} chords after '
-                           f'{ITERATIONS} iterations; reduce the time step')
+        raise NotConverged(f'generalised alpha: largest correction {size / structure.chord:.3g} '
+                           f'chords after {ITERATIONS} iterations; reduce the time step')
 
     def _inverse(self, structure: Structure, position: np.ndarray, v_squared: float,
                  before: np.ndarray | None) -> Inverse:

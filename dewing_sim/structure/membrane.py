@@ -19,7 +19,7 @@ from dewing_sim.errors import BadInput
 from dewing_sim.scales import Scales
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
-from dewing_sim.structure.sheet import BALANCED, SI, Response, Sheet, respond
+from dewing_sim.structure.sheet import BALANCED, SI, Response, Sheet, tensions
 from dewing_sim.structure.taut import Taut
 from dewing_sim.structure.viscosity import Overstress, Prony, Viscous
 
@@ -53,10 +53,12 @@ def _assemble_force(edges, tension):
 
 @numba.njit(cache=True)
 def _internal_force(position, stretch_per_length, *constants):
-    """Return the gradient of the energy (n+1, 2) and whether the thicknesses balance."""
+    """Return the gradient of the energy (n+1, 2), the tensions (n,) and whether they balance."""
     edges = _edges(position)
-    response, status, _ = respond(edges[2] * stretch_per_length, *constants)
-    return _assemble_force(edges, response[0]), status
+    for k in range(stretch_per_length.size):
+        edges[2, k] *= stretch_per_length[k]
+    tension, status = tensions(edges[2], *constants)
+    return _assemble_force(edges, tension), tension, status
 
 
 @numba.njit(cache=True)
@@ -148,7 +150,7 @@ class Membrane(Taut, Viscous):
 
     def tension(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the tensions (n,), force per unit span; negative where the sheet is slack."""
-        return self.respond(position, v_squared).tension
+        return self._forces(position, v_squared)[1]
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return tension, its slopes and thickness of the elements, each (n,)."""
@@ -156,12 +158,15 @@ class Membrane(Taut, Viscous):
 
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the gradient (n+1, 2) of the potential energy in ``position`` (n+1, 2)."""
-        force, status = _internal_force(
-            position, self.stretch_per_length,
-            *self.sheet.constants(self.elements, v_squared, self.overstress))
+        return self._forces(position, v_squared)[0]
+
+    def _forces(self, position: np.ndarray, v_squared: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return internal forces (n+1, 2) and tensions (n,)."""
+        force, tension, status = _internal_force(
+            position, self.stretch_per_length, *self.sheet.constants(v_squared, self.overstress))
         if status != BALANCED:
             self.respond(position, v_squared)       # raises and says where
-        return force
+        return force, tension
 
     def deviatoric_stress(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return S_dev of the elements along and through the sheet, (2, n)."""

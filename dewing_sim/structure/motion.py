@@ -9,9 +9,13 @@ import numpy as np
 
 
 @numba.njit(cache=True)
-def _velocity(position, now, before, dt):
-    """Return the BDF2 derivative (3 x - 4 x_n + x_n-1) / (2 dt)."""
-    return (3.0 * position - 4.0 * now + before) / (2.0 * dt)
+def _combined(x, y, z, a, b, c, scale):
+    """Return (a x + b y + c z) scale for arrays (nodes, 2)."""
+    result = np.empty(x.shape)
+    for i in range(x.shape[0]):
+        for k in range(2):
+            result[i, k] = (a * x[i, k] + b * y[i, k] + c * z[i, k]) * scale
+    return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +39,13 @@ class Motion:
 
     def predict(self, dt: float) -> np.ndarray:
         """Return the position one step ahead, extrapolated with an error of order dt^3."""
-        return self.position + dt * (1.5 * self.velocity - 0.5 * self.velocity_before)
+        return _combined(self.position, self.velocity, self.velocity_before,
+                         1.0, 1.5 * dt, -0.5 * dt, 1.0)
 
     def rate(self, position: np.ndarray, dt: float) -> np.ndarray:
-        """Return the BDF2 velocity if ``position`` is reached one step ahead."""
-        return _velocity(position, self.position, self.position_before, dt)
+        """Return the BDF2 velocity if ``position`` is reached one step ahead.
+
+        (3 x - 4 x_n + x_n-1) / (2 dt).
+        """
+        return _combined(position, self.position, self.position_before,
+                         3.0, -4.0, 1.0, 0.5 / dt)

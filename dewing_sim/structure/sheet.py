@@ -30,11 +30,12 @@ from dewing_sim.structure.material import (
 from dewing_sim.structure.viscosity import Overstress
 
 SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
+NO_OVERSTRESS = Overstress(0.0, np.zeros((2, 0)))
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model='numpy')
 def kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps):
-    """Return tau_1, tau_3, the moduli d tau_i / d e_k for ik = 11, 13, 33, and I1bar."""
+    """Return tau_1, tau_3, the moduli d tau_i / d e_k for ik = 11, 13, 33, and 2 dW/dI1."""
     j = l1 * l2 * l3
     b1, b3 = l1 * l1, l3 * l3
     i1 = b1 + l2 * l2 + b3
@@ -45,57 +46,113 @@ def kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps):
             modulus(s, b1, j, y, b1, j, y, 2.0 * b1, j, 2.0 * y),
             modulus(s, b1, j, y, b3, j, 0.0, 0.0, j, 0.0),
             modulus(s, b3, j, 0.0, b3, j, 0.0, 2.0 * b3, j, 0.0),
-            i1 * j ** (-2.0 / 3.0))
+            s.f)
 
 
 BALANCED, _LOCKED, _PULLED_IN = 0, 1, 2
+NEARLY_BALANCED = 1.0e-8    # logarithm of the thickness stretch
+CHEBYSHEV = np.cos(np.pi * (np.arange(8) + 0.5) / 8)
+SHORTEST = 1.0e-3           # half range of the points, for the sake of rounding
+SMOOTH = 1.0e-9             # last divided difference, thousands of times the relative error
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model='numpy')
 def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, mu, jm, bulk, eps):
     """Solve tau_3 = 0 for l_3; return tau_1, d tau_1/d e_1, d tau_1/d field_squared, l_3, status.
 
     ``extra1`` and ``extra3`` are second Piola-Kirchhoff stresses on top, held fixed. Newton from
-    the given l_3. The last correction is condensed into tau_1, which leaves an error
-    of its square.
+    the given l_3. The last correction is condensed into tau_1, which leaves an error of its
+    square; the bulk modulus has no part in that, for it cancels from tau_1 - tau_3.
     """
     for _ in range(60):
-        t1, t3, c11, c13, c33, i1 = kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps)
+        t1, t3, c11, c13, c33, softness = kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps)
         t1, c11 = t1 + extra1 * l1 * l1, c11 + 2.0 * extra1 * l1 * l1
         t3, c33 = t3 + extra3 * l3 * l3, c33 + 2.0 * extra3 * l3 * l3
-        if not i1 - 3.0 < jm:
+        if not 0.0 < softness < math.inf:       # as long as I1bar - 3 < jm
             return t1, c11, 0.0, l3, _LOCKED
         if not c33 > 0.0:
             return t1, c11, 0.0, l3, _PULLED_IN
-        change = -t3 / c33
-        if abs(change) < 1.0e-8:
-            slope = -0.5 * eps * l1 * l2 / l3 * (1.0 + c13 / c33)
-            return (t1 + c13 * change, c11 - c13 * c13 / c33, slope, l3 * (1.0 + change),
-                    BALANCED)
+        change, ratio = -t3 / c33, c13 / c33
+        if abs(change) < NEARLY_BALANCED:
+            slope = -0.5 * eps * l1 * l2 / l3 * (1.0 + ratio)
+            return (t1 + c13 * change, c11 - c13 * ratio, slope, l3 * (1.0 + change), BALANCED)
         l3 *= math.exp(min(max(change, -0.5), 0.5))
     return t1, c11, 0.0, l3, _PULLED_IN
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model='numpy')
 def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
-    """Fill rows tension, its slopes in stretch and V^2, thickness; return status and element."""
+    """Fill rows tension, its slopes in stretch and V^2, thickness; return status and element.
+
+    ``extra`` (2, n) are stresses on top, see `_balance_thickness`, or (2, 0) without.
+    """
     response = np.empty((4, stretch.size))
     field_squared = v_squared / thickness ** 2
     volume = 1.0        # J of the neighbour is the best first guess
+    extra1, extra3 = 0.0, 0.0
     for k in range(stretch.size):
         l1 = stretch[k]
+        per_area = 1.0 / (l1 * lateral)
+        if extra.shape[1] > 0:
+            extra1, extra3 = extra[0, k], extra[1, k]
         tau, modulus, slope, l3, status = _balance_thickness(
-            l1, lateral, volume / (l1 * lateral), field_squared, extra[0, k], extra[1, k],
-            mu, jm, bulk, eps)
+            l1, lateral, volume * per_area, field_squared, extra1, extra3, mu, jm, bulk, eps)
         if status != BALANCED:
             return response, status, k
         volume = l1 * lateral * l3
-        scale = thickness / (l1 * lateral)
+        scale = thickness * per_area
         response[0, k] = scale * tau
         response[1, k] = scale * (modulus - tau) / l1
-        response[2, k] = scale * slope / thickness ** 2
+        response[2, k] = per_area * slope / thickness
         response[3, k] = thickness * l3
     return response, BALANCED, -1
+
+
+@numba.njit(cache=True, error_model='numpy')
+def tensions(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
+    """Return the tensions (n,) as `respond` does, and a status.
+
+    All elements of an elastic sheet share one curve, which a polynomial through Chebyshev points
+    follows to round-off where the stretches differ little.
+    """
+    if extra.shape[1] == 0:
+        tension, is_smooth = _interpolated_tensions(
+            stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps)
+        if is_smooth:
+            return tension, BALANCED
+    response, status, _ = respond(
+        stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps)
+    return response[0], status
+
+
+@numba.njit(cache=True, error_model='numpy')
+def _interpolated_tensions(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
+    """Return tensions (n,) and whether the stretches differ little enough for that."""
+    low, high = stretch[0], stretch[0]
+    for k in range(stretch.size):
+        low, high = min(low, stretch[k]), max(high, stretch[k])
+    middle, half = 0.5 * (low + high), max(0.5 * (high - low), SHORTEST * high)
+    node = np.empty(CHEBYSHEV.size)
+    for i in range(node.size):
+        node[i] = middle + half * CHEBYSHEV[i]
+    response, status, _ = respond(node, lateral, thickness, v_squared, extra, mu, jm, bulk, eps)
+    tension = np.empty(stretch.size)
+    if status != BALANCED:
+        return tension, False
+    difference, last = response[0], node.size - 1
+    size = abs(difference[0])
+    for order in range(1, node.size):           # Newton's divided differences
+        for i in range(last, order - 1, -1):
+            difference[i] = ((difference[i] - difference[i - 1])
+                             / (CHEBYSHEV[i] - CHEBYSHEV[i - order]))
+    if not abs(difference[last]) < SMOOTH * size:
+        return tension, False
+    for k in range(stretch.size):
+        x, value = (stretch[k] - middle) / half, difference[last]
+        for i in range(last - 1, -1, -1):
+            value = difference[i] + (x - CHEBYSHEV[i]) * value
+        tension[k] = value
+    return tension, True
 
 
 class Response(NamedTuple):
@@ -142,19 +199,19 @@ class Sheet:
         """
         stretch = np.asarray(stretch, dtype=float)
         response, status, k = respond(
-            stretch, *self.constants(stretch.size, v_squared, overstress))
+            stretch, *self.constants(v_squared, overstress))
         if status != BALANCED:
             raise Diverged(self._describe_failure(status, k, stretch[k], v_squared))
         return Response(*response)
 
-    def constants(self, n: int, v_squared: float, overstress: Overstress | None = None) -> tuple:
-        """Return what the compiled `respond` takes after the stretches of ``n`` elements.
+    def constants(self, v_squared: float, overstress: Overstress | None = None) -> tuple:
+        """Return what the compiled `respond` and `tensions` take after the stretches.
 
         Raises `BadInput` for a negative or non-finite V^2.
         """
         if not 0.0 <= v_squared < math.inf:
             raise BadInput(f'v_squared = {v_squared} V^2 is out of range: from 0 to infinity')
-        gain, held = overstress or (0.0, np.zeros((2, n)))
+        gain, held = overstress or NO_OVERSTRESS
         mu, *others = self.elastomer.constants
         return (self.lateral_stretch, self.initial_thickness, float(v_squared), held,
                 (1.0 + gain) * mu, *others)
