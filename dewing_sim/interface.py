@@ -1,11 +1,6 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where flow and membrane meet: conservative transfer and the implicit coupling iteration.
-
-The membrane nodes and the flow columns do not match.  Both transfers integrate over the overlaps
-of elements and columns, in the present position, and each is the transpose of the other, so force
-and virtual work pass exactly:  sum_i dx_i jump_i w_i = sum_k f_k . velocity_k.
-"""
+"""Where flow and membrane meet: the implicit coupling iteration."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,12 +8,14 @@ from typing import Any
 import numba
 import numpy as np
 
+from dewing_sim import transfer
 from dewing_sim.errors import NotConverged, RunFailed
 from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.fluid.onset import Onset
-from dewing_sim.structure import dynamics
+from dewing_sim.membrane_step import step_of
 from dewing_sim.structure.band import LowRank
 from dewing_sim.structure.dynamics import Motion, Operator, Structure
+from dewing_sim.transfer import Load
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
 EXTRAPOLATION = tuple(map(np.array, (       # from one, two or three past values
@@ -58,7 +55,7 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     are accelerated, so is the membrane.  Raises `NotConverged` after ``passes``.
     """
     coasting = _coasting(fluid, structure, motion)
-    step = dynamics.Step(structure, motion, dt, v_squared, operator, damping)
+    step = step_of(structure, motion, dt, v_squared, operator, damping)
 
     def moved_under(jump, velocity, guess, accuracy):
         load = Load(fluid, structure, jump, velocity, wall_pressure, onset)
@@ -71,13 +68,11 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
             position = moved_under(jump, coasting, position, FORESEEN)
         except RunFailed:
             pass                # only a guess: the passes will tell whether the step can be made
-    wall = wall_of(fluid.columns, structure.surface(position),
-                   structure.surface(motion.rate(position, dt)))
+    wall = wall_of(fluid, structure, position, motion.rate(position, dt))
     for iteration in range(1, passes + 1):
         prediction = fluid.predict(flow, wall, onset)
         position = moved_under(prediction.jump, wall.velocity, position, ACCURACY)
-        before, wall = wall, wall_of(fluid.columns, structure.surface(position),
-                                     structure.surface(motion.rate(position, dt)))
+        before, wall = wall, wall_of(fluid, structure, position, motion.rate(position, dt))
         residual = shape_change(wall.height, before.height)
         if residual <= tolerance:
             still = prediction.jump + fluid.resistance @ (before.velocity - coasting)
@@ -91,8 +86,9 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
 
 def _coasting(fluid: Fluid, structure: Structure, motion: Motion) -> np.ndarray:
     """Return the column velocities (columns,) of a step without acceleration."""
-    return _coasting_velocity(fluid.columns, *map(structure.surface, (
-        motion.position, motion.velocity, motion.position_before, motion.velocity_before)))
+    now = wall_of(fluid, structure, motion.position, motion.velocity).velocity
+    before = wall_of(fluid, structure, motion.position_before, motion.velocity_before).velocity
+    return (4.0 * now - before) / 3.0
 
 
 @numba.njit(cache=True)
@@ -105,35 +101,11 @@ def shape_change(after, before):
     return change / deflection
 
 
-def wall_of(columns: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> Wall:
-    """Return the wall that the flow sees of nodes (n + 1, 2) and their velocities."""
-    return Wall(*_wall(columns, position, velocity))
-
-
-@dataclass(frozen=True)
-class Load:
-    """Nodal forces of a flow and of accelerated axes, affine in the nodal velocities.
-
-    ``jump`` (columns,) acts if the wall moves with ``velocity`` (columns,).
-    """
-
-    fluid: Fluid
-    structure: Structure
-    jump: np.ndarray
-    velocity: np.ndarray
-    wall_pressure: float
-    onset: Onset | None = None
-
-    def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (nodes, 2) at these velocities."""
-        force = self.structure.spread(_load(
-            self.fluid.columns, self.structure.surface(position),
-            self.structure.surface(velocity), self.jump, self.velocity, self.fluid.resistance,
-            self.wall_pressure))
-        if self.onset is not None and self.onset.is_accelerated:
-            force -= self.structure.mass[:, None] * self.onset.frame_acceleration(
-                position, velocity)
-        return force
+def wall_of(fluid: Fluid, structure: Structure, position: np.ndarray, velocity: np.ndarray,
+            ) -> Wall:
+    """Return the wall that the flow sees of nodal positions and velocities (nodes, 2)."""
+    return Wall(*transfer.wall(fluid.columns, structure.surface(position),
+                               structure.surface(velocity)))
 
 
 def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
@@ -144,106 +116,8 @@ def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
     position = structure.rest_position
     line = structure.surface(position)
     unit = np.eye(line.size).reshape(-1, *line.shape)
-    columns = np.array([column_velocity(fluid.columns, line, motion) for motion in unit])
+    columns = np.array([transfer.wall(fluid.columns, line, motion)[1] for motion in unit])
     basis = np.stack([structure.spread(column.reshape(line.shape)).ravel()[structure.free]
                       for column in columns.T], axis=1)
     weight = np.diff(fluid.columns)[:, None] * fluid.resistance
     return LowRank(np.ascontiguousarray(basis), weight)
-
-
-@numba.njit(cache=True)
-def column_velocity(columns, position, velocity):
-    """Return the column averages of Y_t = v_y - Y_x v_x, the rise of the wall at fixed x."""
-    w = np.empty(columns.size - 1)
-    for column in range(w.size):
-        w[column] = 0.0
-    element, column = 0, 0
-    while element < position.shape[0] - 1 and column < w.size:
-        x0, x1 = position[element, 0], position[element + 1, 0]
-        slope = (position[element + 1, 1] - position[element, 1]) / (x1 - x0)
-        left = max(x0, columns[column])
-        right = min(x1, columns[column + 1])
-        if right > left:
-            share = (0.5 * (left + right) - x0) / (x1 - x0)
-            start = velocity[element, 1] - slope * velocity[element, 0]
-            end = velocity[element + 1, 1] - slope * velocity[element + 1, 0]
-            w[column] += (right - left) * (start + share * (end - start))
-        if x1 <= columns[column + 1]:
-            element += 1
-        else:
-            column += 1
-    for column in range(w.size):
-        w[column] /= columns[column + 1] - columns[column]
-    return w
-
-
-@numba.njit(cache=True)
-def nodal_force(columns, position, jump):
-    """Return the nodal forces (n + 1, 2) of column pressure jumps, normal to the elements."""
-    force = np.empty(position.shape)
-    for node in range(position.shape[0]):
-        force[node, 0], force[node, 1] = 0.0, 0.0
-    element, column = 0, 0
-    while element < position.shape[0] - 1 and column < jump.size:
-        x0, x1 = position[element, 0], position[element + 1, 0]
-        slope = (position[element + 1, 1] - position[element, 1]) / (x1 - x0)
-        left = max(x0, columns[column])
-        right = min(x1, columns[column + 1])
-        if right > left:
-            share = (0.5 * (left + right) - x0) / (x1 - x0)
-            total = jump[column] * (right - left)
-            force[element, 1] += total * (1.0 - share)
-            force[element + 1, 1] += total * share
-            force[element, 0] -= slope * total * (1.0 - share)
-            force[element + 1, 0] -= slope * total * share
-        if x1 <= columns[column + 1]:
-            element += 1
-        else:
-            column += 1
-    return force
-
-
-@numba.njit(cache=True)
-def _load(columns, position, velocity, jump, reference, resistance, wall_pressure):
-    """Return the nodal forces of a jump that acts if the columns move with ``reference``."""
-    change = column_velocity(columns, position, velocity)
-    total = np.empty(jump.size)
-    for i in range(jump.size):
-        change[i] -= reference[i]
-        total[i] = jump[i] + wall_pressure
-    _subtract_product(resistance, change, total)
-    return nodal_force(columns, position, total)
-
-
-@numba.njit(cache=True, fastmath={'reassoc', 'nsz'})
-def _subtract_product(matrix, vector, result):
-    for i in range(result.size):
-        product = 0.0
-        for j in range(vector.size):
-            product += matrix[i, j] * vector[j]
-        result[i] -= product
-
-
-@numba.njit(cache=True)
-def _wall(columns, position, velocity):
-    """Return the heights at the column faces, those of the edges beyond, and their velocities."""
-    height = np.empty(columns.size)
-    element, last = 0, position.shape[0] - 2
-    for i in range(columns.size):
-        while element < last and position[element + 1, 0] < columns[i]:
-            element += 1
-        x0, x1 = position[element, 0], position[element + 1, 0]
-        share = min(max((columns[i] - x0) / (x1 - x0), 0.0), 1.0)
-        height[i] = position[element, 1] + share * (position[element + 1, 1]
-                                                    - position[element, 1])
-    return height, column_velocity(columns, position, velocity)
-
-
-@numba.njit(cache=True)
-def _coasting_velocity(columns, position, velocity, position_before, velocity_before):
-    """Return (4 w_n - w_n-1) / 3 of the columns."""
-    w = column_velocity(columns, position, velocity)
-    before = column_velocity(columns, position_before, velocity_before)
-    for column in range(w.size):
-        w[column] = (4.0 * w[column] - before[column]) / 3.0
-    return w

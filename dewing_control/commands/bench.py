@@ -99,8 +99,7 @@ def time_parts(wing: Any, state: Any, steps: int) -> dict[str, float]:
     """Return the times (ms) of the parts of a step that can run alone."""
     from dewing_sim import interface
     fluid, membrane, motion = wing.fluid, wing.membrane, state.motion
-    wall = interface.wall_of(fluid.columns, membrane.surface(motion.position),
-                             membrane.surface(motion.velocity))
+    wall = interface.wall_of(fluid, membrane, motion.position, motion.velocity)
     prediction = fluid.predict(state.flow, wall)
     parts = {
         'predict_ms': lambda: fluid.predict(state.flow, wall),

@@ -61,26 +61,23 @@ def substitute(factors, rows):
 
 
 @numba.njit(cache=True)
-def _subtract_low_rank(row, column, value, answer, solution):
-    """Replace x, the only row of ``solution`` (1, m), by x - answer^T basis^T x."""
+def solve(factors, row, column, value, answer, right):
+    """Replace ``right`` (1, m) by x - answer^T basis^T x, with x the solution for the band alone.
+
+    Return the largest entry, NaN if one is. The basis has ``value`` at ``row`` and ``column``.
+    """
+    substitute(factors, right)
     share = np.empty(answer.shape[0])
     for k in range(share.size):
         share[k] = 0.0
     for entry in range(value.size):
-        share[column[entry]] += value[entry] * solution[0, row[entry]]
+        share[column[entry]] += value[entry] * right[0, row[entry]]
     for k in range(share.size):
-        for i in range(solution.shape[1]):
-            solution[0, i] -= answer[k, i] * share[k]
-
-
-@numba.njit(cache=True)
-def _solve(factors, row, column, value, answer, residual):
-    """Replace ``residual`` (1, m) by the solution; return its largest entry, NaN if one is."""
-    substitute(factors, residual)
-    _subtract_low_rank(row, column, value, answer, residual)
+        for i in range(right.shape[1]):
+            right[0, i] -= answer[k, i] * share[k]
     largest = 0.0
-    for i in range(residual.shape[1]):
-        size = abs(residual[0, i])
+    for i in range(right.shape[1]):
+        size = abs(right[0, i])
         if size > largest or math.isnan(size):
             largest = size
     return largest
@@ -118,7 +115,7 @@ class Inverse:
         substitute(factors, solved)
         core = np.eye(len(weight)) + weight @ (solved @ basis).T
         answer = np.linalg.solve(core, weight).T @ solved
-        row, column = np.nonzero(basis)
+        row, column = np.array(np.nonzero(basis))
         return cls(factors, row, column, basis[row, column], answer)
 
     def about(self, band: np.ndarray) -> 'Inverse':
@@ -131,5 +128,5 @@ class Inverse:
     def __call__(self, vector: np.ndarray) -> tuple[np.ndarray, float]:
         """Return the product with ``vector`` (m,) and the size of its largest entry."""
         product = np.array(vector, ndmin=2, order='C')
-        size = _solve(self.factors, self.row, self.column, self.value, self.answer, product)
+        size = solve(self.factors, self.row, self.column, self.value, self.answer, product)
         return product[0], size

@@ -14,7 +14,6 @@ import math
 from dataclasses import dataclass
 from typing import Callable, Protocol
 
-import numba
 import numpy as np
 
 from dewing_sim.errors import Diverged, NotConverged, RunFailed
@@ -109,18 +108,6 @@ def _band(structure: Structure, position: np.ndarray, v_squared: float, dt: floa
     return band
 
 
-@numba.njit(cache=True)
-def _imbalance(mass, velocity, now, before, dt, damping, internal, load):
-    """Return M (a + damping w) + f_int - load, (nodes, 2)."""
-    result = np.empty(velocity.shape)
-    for i in range(mass.size):
-        for k in range(2):
-            rate = (3.0 * velocity[i, k] - 4.0 * now[i, k] + before[i, k]) * (0.5 / dt)
-            result[i, k] = (mass[i] * (rate + damping * velocity[i, k])
-                            + internal[i, k] - load[i, k])
-    return result
-
-
 def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, load: Load,
             operator: Operator, damping: float = 0.0, tolerance: float = 1.0e-10,
             guess: np.ndarray | None = None) -> Motion:
@@ -172,18 +159,22 @@ class Step:
 
     def end(self, position: np.ndarray) -> Motion:
         """Return the motion that ends at ``position``; raise `Slack` if it has no tension."""
-        self.structure.require_taut(position, self.v_squared)
+        self._require_taut(position)
         motion = self.motion
         return Motion(position, motion.rate(position, self.dt), motion.position, motion.velocity,
                       self.structure.after(motion, position, self.v_squared, self.dt))
 
+    def _require_taut(self, position: np.ndarray) -> None:
+        self.structure.require_taut(position, self.v_squared)
+
     def _residual(self, load: Load, position: np.ndarray) -> np.ndarray:
         """Return the imbalance (m,) of the free degrees of freedom."""
         motion, velocity = self.motion, self.motion.rate(position, self.dt)
-        return _imbalance(
-            self.structure.mass, velocity, motion.velocity, motion.velocity_before, self.dt,
-            self.damping, self.structure.internal_force(position, self.v_squared),
-            load(position, velocity)).reshape(-1)[self.structure.free]
+        force = (self.structure.internal_force(position, self.v_squared)
+                 + self.structure.mass[:, None] * motion.acceleration(
+                     velocity, self.dt, self.damping))
+        force -= load(position, velocity)
+        return force.reshape(-1)[self.structure.free]
 
     def _inverted(self, position: np.ndarray, before: np.ndarray | None) -> Inverse:
         """Return the inverse at ``position``; unless exact, with the operator's flow part."""
@@ -202,33 +193,40 @@ class Step:
         """Return the position where the imbalance is ``held`` (m,), by default zero."""
         position, before, previous = start, None, np.inf
         for iteration in range(ITERATIONS):
-            residual = self._residual(load, position)
-            if held is not None:
-                with np.errstate(invalid='ignore'):
-                    residual -= held
-            correction, size = self._corrected(residual, position, before, previous)
+            moved, size = self._improved(load, position, held, before, previous)
             if not math.isfinite(size):
                 raise Diverged(f'structure: non-finite residual or correction in iteration '
                                f'{iteration}; check the load or reduce the time step',
                                self.motion)
-            before, position = position, position.copy()
-            position.reshape(-1)[self.structure.free] -= correction
+            before, position = position, moved
             if size <= self.accuracy:
                 return position
             previous = size
         self.structure.require_taut(position, self.v_squared)
         raise NotConverged(f'structure: largest correction {size / self.structure.chord:.3g} '
-                           f'chords, residual {np.abs(residual).max():.3g} after {ITERATIONS} '
-                           f'iterations (tolerance {self.accuracy / self.structure.chord:.3g}); '
+                           f'chords after {ITERATIONS} iterations '
+                           f'(tolerance {self.accuracy / self.structure.chord:.3g}); '
                            'reduce the time step', self.motion)
 
-    def _corrected(self, residual: np.ndarray, position: np.ndarray, before: np.ndarray | None,
-                   previous: float) -> tuple[np.ndarray, float]:
-        """Return the correction and its size, with a new tangent if the last one is stale."""
+    def _improved(self, load: Load, position: np.ndarray, held: np.ndarray | None,
+                  before: np.ndarray | None, previous: float) -> tuple[np.ndarray, float]:
+        """Return `_iterate` with a new tangent if the last one is stale."""
         moved = previous if before is not None else 0.0
         if self._inverse is not None and moved <= self.structure.linear_range:
-            correction, size = self._inverse(residual)
+            position_after, size = self._iterate(load, position, held)
             if size <= max(previous / SHRINKAGE, self.accuracy):
-                return correction, size
+                return position_after, size
         self._inverse = self._inverted(position, before)
-        return self._inverse(residual)
+        return self._iterate(load, position, held)
+
+    def _iterate(self, load: Load, position: np.ndarray, held: np.ndarray | None,
+                 ) -> tuple[np.ndarray, float]:
+        """Return the position after one correction by the inverse at hand, and its size."""
+        residual = self._residual(load, position)
+        if held is not None:
+            with np.errstate(invalid='ignore'):
+                residual -= held
+        correction, size = self._inverse(residual)
+        moved = position.copy()
+        moved.reshape(-1)[self.structure.free] -= correction
+        return moved, size

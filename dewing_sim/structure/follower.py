@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A pressure jump that stays normal to a line of straight segments, and its load stiffness."""
 
-import numba
+from itertools import product
+
 import numpy as np
 
 
@@ -19,29 +20,23 @@ def pressure_force(line: np.ndarray, pressure) -> np.ndarray:
     return force
 
 
-@numba.njit(cache=True)
-def subtract_stiffness(band, pressure, equation, share):
+def subtract_stiffness(band: np.ndarray, pressure: np.ndarray, equation: np.ndarray,
+                       share: np.ndarray) -> None:
     """Subtract d(pressure force)/d(position) from a band (2 w + 1, m), in place.
 
     Line node i is sum_a share[i, a] times the a-th structure node at that place, whose equations
     are ``equation[i, a]`` (x and y), negative where fixed.
     """
-    width = band.shape[0] // 2
-    for k in range(pressure.size):
-        half = 0.5 * pressure[k]
-        for row_end in range(2):
-            for end in range(2):
-                turn = half if end == 1 else -half          # step = right - left
-                for a in range(share.shape[1]):
-                    for b in range(share.shape[1]):
-                        value = turn * share[k + row_end, a] * share[k + end, b]
-                        _add(band, width, equation[k + row_end, a, 0],
-                             equation[k + end, b, 1], value)
-                        _add(band, width, equation[k + row_end, a, 1],
-                             equation[k + end, b, 0], -value)
+    n = pressure.size
+    ends, nodes = (slice(0, n), slice(1, n + 1)), range(share.shape[1])
+    for row, column, a, b in product(ends, ends, nodes, nodes):
+        turn = 0.5 * pressure if column is ends[1] else -0.5 * pressure     # step = right - left
+        value = turn * share[row, a] * share[column, b]
+        _add(band, equation[row, a, 0], equation[column, b, 1], value)
+        _add(band, equation[row, a, 1], equation[column, b, 0], -value)
 
 
-@numba.njit(cache=True)
-def _add(band, width, row, column, value):
-    if row >= 0 and column >= 0:
-        band[width + row - column, column] += value
+def _add(band: np.ndarray, row: np.ndarray, column: np.ndarray, value: np.ndarray) -> None:
+    free = (row >= 0) & (column >= 0)
+    row, column = row[free], column[free]
+    band[len(band) // 2 + row - column, column] += value[free]

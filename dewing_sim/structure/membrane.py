@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-import numba
 import numpy as np
 
 from dewing_sim import parameters
@@ -19,71 +18,35 @@ from dewing_sim.errors import BadInput
 from dewing_sim.scales import Scales
 from dewing_sim.structure import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
-from dewing_sim.structure.sheet import BALANCED, SI, Response, Sheet, tensions
+from dewing_sim.structure.sheet import SI, Response, Sheet
 from dewing_sim.structure.taut import Taut
 from dewing_sim.structure.viscosity import Overstress, Prony, Viscous
 
 
-@numba.njit(cache=True)
-def _edges(position):
-    """Return rows direction x, direction y, length of the elements, (3, n)."""
-    n = position.shape[0] - 1
-    edges = np.empty((3, n))
-    for k in range(n):
-        dx = position[k + 1, 0] - position[k, 0]
-        dy = position[k + 1, 1] - position[k, 1]
-        length = math.sqrt(dx * dx + dy * dy)
-        edges[0, k], edges[1, k], edges[2, k] = dx / length, dy / length, length
-    return edges
+def _edges(position: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return direction x, direction y and length of the elements, each (n,)."""
+    dx, dy = (position[1:] - position[:-1]).T
+    length = np.hypot(dx, dy)
+    return dx / length, dy / length, length
 
 
-@numba.njit(cache=True)
-def _assemble_force(edges, tension):
-    """Return the gradient of the energy, (n+1, 2): each element pulls its nodes together."""
-    n = tension.size
-    force = np.zeros((n + 1, 2))
-    for k in range(n):
-        fx, fy = tension[k] * edges[0, k], tension[k] * edges[1, k]
-        force[k, 0] -= fx
-        force[k, 1] -= fy
-        force[k + 1, 0] += fx
-        force[k + 1, 1] += fy
-    return force
-
-
-@numba.njit(cache=True)
-def _internal_force(position, stretch_per_length, *constants):
-    """Return the gradient of the energy (n+1, 2), the tensions (n,) and whether they balance."""
-    edges = _edges(position)
-    for k in range(stretch_per_length.size):
-        edges[2, k] *= stretch_per_length[k]
-    tension, status = tensions(edges[2], *constants)
-    return _assemble_force(edges, tension), tension, status
-
-
-@numba.njit(cache=True)
-def _assemble_tangent(edges, tension, stiffness):
+def _assemble_tangent(position: np.ndarray, tension: np.ndarray, stiffness: np.ndarray,
+                      ) -> np.ndarray:
     """Return the banded derivative of the internal force, (7, 2(n-1)).
 
     ``stiffness`` is dT / d length.
     """
-    n = tension.size
-    band = np.zeros((7, 2 * (n - 1)))
-    for k in range(n):
-        ex, ey = edges[0, k], edges[1, k]
-        across = tension[k] / edges[2, k]
-        along = stiffness[k] - across
-        xx, xy, yy = along * ex * ex + across, along * ex * ey, along * ey * ey + across
-        for a in range(2):
-            for b in range(2):
-                row, column = 2 * (k - 1 + a), 2 * (k - 1 + b)
-                if row < 0 or column < 0 or row >= band.shape[1] or column >= band.shape[1]:
-                    continue
-                sign = 1.0 if a == b else -1.0
-                band[3 + row - column, column] += sign * xx
-                band[4 + row - column, column] += sign * xy
-                band[2 + row - column, column + 1] += sign * xy
-                band[3 + row - column, column + 1] += sign * yy
+    ex, ey, length = _edges(position)
+    across = tension / length
+    along = stiffness - across
+    xx, xy, yy = along * ex * ex + across, along * ex * ey, along * ey * ey + across
+    band = np.zeros((7, 2 * (tension.size - 1)))
+    x, y = band[:, 0::2], band[:, 1::2]                 # columns of the coordinates of nodes
+    x[3], y[3] = xx[:-1] + xx[1:], yy[:-1] + yy[1:]     # a node with itself
+    x[4] = y[2] = xy[:-1] + xy[1:]
+    x[5, :-1] = x[1, 1:] = -xx[1:-1]                    # with the next and the last one
+    y[5, :-1] = y[1, 1:] = -yy[1:-1]
+    x[6, :-1] = y[4, :-1] = x[2, 1:] = y[0, 1:] = -xy[1:-1]
     return band
 
 
@@ -150,7 +113,7 @@ class Membrane(Taut, Viscous):
 
     def tension(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the tensions (n,), force per unit span; negative where the sheet is slack."""
-        return self._forces(position, v_squared)[1]
+        return self.respond(position, v_squared).tension
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return tension, its slopes and thickness of the elements, each (n,)."""
@@ -158,15 +121,14 @@ class Membrane(Taut, Viscous):
 
     def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the gradient (n+1, 2) of the potential energy in ``position`` (n+1, 2)."""
-        return self._forces(position, v_squared)[0]
-
-    def _forces(self, position: np.ndarray, v_squared: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return internal forces (n+1, 2) and tensions (n,)."""
-        force, tension, status = _internal_force(
-            position, self.stretch_per_length, *self.sheet.constants(v_squared, self.overstress))
-        if status != BALANCED:
-            self.respond(position, v_squared)       # raises and says where
-        return force, tension
+        ex, ey, length = _edges(position)
+        tension = self.sheet.respond(length * self.stretch_per_length, v_squared,
+                                     self.overstress).tension
+        pull = np.stack((tension * ex, tension * ey), axis=1)
+        force = np.zeros(position.shape)
+        force[:-1] -= pull
+        force[1:] += pull
+        return force
 
     def deviatoric_stress(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return S_dev of the elements along and through the sheet, (2, n)."""
@@ -189,10 +151,8 @@ class Membrane(Taut, Viscous):
         ``pressure``, scalar or (n,), subtracts the stiffness of that follower load. ``before``,
         the position of Newton's last iteration, does not matter here.
         """
-        edges = _edges(position)
-        response = self.sheet.respond(edges[2] * self.stretch_per_length, v_squared,
-                                      self.overstress)
-        band = _assemble_tangent(edges, response.tension,
+        response = self.respond(position, v_squared)
+        band = _assemble_tangent(position, response.tension,
                                  response.stiffness * self.stretch_per_length)
         if np.any(pressure):
             subtract_stiffness(band, np.full(self.elements, pressure, dtype=float),

@@ -49,3 +49,11 @@ class Motion:
         """
         return _combined(position, self.position, self.position_before,
                          3.0, -4.0, 1.0, 0.5 / dt)
+
+    def acceleration(self, velocity: np.ndarray, dt: float, damping: float = 0.0) -> np.ndarray:
+        """Return a + ``damping`` w if ``velocity`` w is reached one step ahead.
+
+        a = (3 w - 4 w_n + w_n-1) / (2 dt).
+        """
+        return _combined(velocity, self.velocity, self.velocity_before,
+                         3.0 + 2.0 * dt * damping, -4.0, 1.0, 0.5 / dt)

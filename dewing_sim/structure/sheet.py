@@ -51,9 +51,6 @@ def kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps):
 
 BALANCED, _LOCKED, _PULLED_IN = 0, 1, 2
 NEARLY_BALANCED = 1.0e-8    # logarithm of the thickness stretch
-CHEBYSHEV = np.cos(np.pi * (np.arange(8) + 0.5) / 8)
-SHORTEST = 1.0e-3           # half range of the points, for the sake of rounding
-SMOOTH = 1.0e-9             # last divided difference, thousands of times the relative error
 
 
 @numba.njit(cache=True, error_model='numpy')
@@ -108,53 +105,6 @@ def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
     return response, BALANCED, -1
 
 
-@numba.njit(cache=True, error_model='numpy')
-def tensions(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
-    """Return the tensions (n,) as `respond` does, and a status.
-
-    All elements of an elastic sheet share one curve, which a polynomial through Chebyshev points
-    follows to round-off where the stretches differ little.
-    """
-    if extra.shape[1] == 0:
-        tension, is_smooth = _interpolated_tensions(
-            stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps)
-        if is_smooth:
-            return tension, BALANCED
-    response, status, _ = respond(
-        stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps)
-    return response[0], status
-
-
-@numba.njit(cache=True, error_model='numpy')
-def _interpolated_tensions(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
-    """Return tensions (n,) and whether the stretches differ little enough for that."""
-    low, high = stretch[0], stretch[0]
-    for k in range(stretch.size):
-        low, high = min(low, stretch[k]), max(high, stretch[k])
-    middle, half = 0.5 * (low + high), max(0.5 * (high - low), SHORTEST * high)
-    node = np.empty(CHEBYSHEV.size)
-    for i in range(node.size):
-        node[i] = middle + half * CHEBYSHEV[i]
-    response, status, _ = respond(node, lateral, thickness, v_squared, extra, mu, jm, bulk, eps)
-    tension = np.empty(stretch.size)
-    if status != BALANCED:
-        return tension, False
-    difference, last = response[0], node.size - 1
-    size = abs(difference[0])
-    for order in range(1, node.size):           # Newton's divided differences
-        for i in range(last, order - 1, -1):
-            difference[i] = ((difference[i] - difference[i - 1])
-                             / (CHEBYSHEV[i] - CHEBYSHEV[i - order]))
-    if not abs(difference[last]) < SMOOTH * size:
-        return tension, False
-    for k in range(stretch.size):
-        x, value = (stretch[k] - middle) / half, difference[last]
-        for i in range(last - 1, -1, -1):
-            value = difference[i] + (x - CHEBYSHEV[i]) * value
-        tension[k] = value
-    return tension, True
-
-
 class Response(NamedTuple):
     """State of a sheet at given stretches, each of shape (n,)."""
 
@@ -205,7 +155,7 @@ class Sheet:
         return Response(*response)
 
     def constants(self, v_squared: float, overstress: Overstress | None = None) -> tuple:
-        """Return what the compiled `respond` and `tensions` take after the stretches.
+        """Return what the compiled `respond` takes after the stretches.
 
         Raises `BadInput` for a negative or non-finite V^2.
         """

@@ -13,7 +13,8 @@ r = (1 - e) tau / dt. Statics see the long-term elastomer.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -104,8 +105,8 @@ class Viscous(ABC):
         if self.viscosity is None:
             return self
         memory = self._memory(motion, v_squared)
-        return replace(self, overstress=Overstress(self.viscosity.instant_gain(dt),
-                                                   self.viscosity.held(memory, dt)))
+        return self._under(Overstress(self.viscosity.instant_gain(dt),
+                                      self.viscosity.held(memory, dt)))
 
     def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
               ) -> np.ndarray:
@@ -119,7 +120,13 @@ class Viscous(ABC):
         """Return the structure with its present overstress, to observe it."""
         if self.viscosity is None or not motion.memory.size:
             return self
-        return replace(self, overstress=Overstress(0.0, motion.memory[:-1].sum(axis=0)))
+        return self._under(Overstress(0.0, motion.memory[:-1].sum(axis=0)))
+
+    def _under(self: Structure, overstress: Overstress) -> Structure:
+        """Return a copy with another overstress, which keeps cached properties."""
+        structure = copy(self)
+        object.__setattr__(structure, 'overstress', overstress)
+        return structure
 
     def _memory(self, motion: Motion, v_squared: float) -> np.ndarray:
         if motion.memory.size:
