@@ -86,9 +86,8 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
 
 def _coasting(fluid: Fluid, structure: Structure, motion: Motion) -> np.ndarray:
     """Return the column velocities (columns,) of a step without acceleration."""
-    now = wall_of(fluid, structure, motion.position, motion.velocity).velocity
-    before = wall_of(fluid, structure, motion.position_before, motion.velocity_before).velocity
-    return (4.0 * now - before) / 3.0
+    return transfer.coasting_velocity(fluid.columns, *map(structure.surface, (
+        motion.position, motion.velocity, motion.position_before, motion.velocity_before)))
 
 
 @numba.njit(cache=True)

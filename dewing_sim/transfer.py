@@ -108,6 +108,17 @@ def wall(columns, position, velocity):
 
 
 @numba.njit(cache=True)
+def coasting_velocity(columns, position, velocity, position_before, velocity_before):
+    """Return the column velocities (4 w_n - w_n-1) / 3 of a BDF2 step without acceleration."""
+    w = column_velocity(columns, position, velocity, *overlaps(columns, position))
+    before = column_velocity(columns, position_before, velocity_before,
+                             *overlaps(columns, position_before))
+    for column in range(w.size):
+        w[column] = (4.0 * w[column] - before[column]) / 3.0
+    return w
+
+
+@numba.njit(cache=True)
 def _nodal_load(columns, position, velocity, jump, reference, resistance, uniform):
     force = np.zeros(position.shape)
     add_load(columns, position, velocity, jump, reference, resistance, uniform, force)

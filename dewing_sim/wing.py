@@ -66,6 +66,7 @@ class Wing:
         self.fluid = engines.make(
             self.case.numerics.engine, case.numerics.grid, self.scales.reynolds,
             case.flow.angle_of_attack, self.dt / self.scales.time)
+        self._centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
         self._resistance = interface.nodal_resistance(self.fluid, self.membrane)
         self._operator = self.operator(damping=0.0)
 
@@ -125,17 +126,16 @@ class Wing:
         x, y = self.membrane.surface(state.motion.position).T
         camber, place = peak(x, y)
         sheet = self.membrane.settled(state.motion).respond(state.motion.position, state.v_squared)
-        centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
         return Outputs(
             time=state.step * self.dt, v_squared=state.v_squared,
             cl=loads.cl, cd=loads.cd, cm=loads.cm,
             camber_mean=chord * float(0.5 * (y[1:] + y[:-1]) @ (x[1:] - x[:-1])),
             camber_max=chord * camber, camber_max_position=place,
-            tension=self.scales.tension * float(sheet.tension.mean()),
+            tension=self.scales.tension * float(sheet.tension.sum()) / sheet.tension.size,
             electric_field=math.sqrt(state.v_squared) / (chord * float(sheet.thickness.min())),
             coupling_iterations=state.iterations,
             x=chord * x, y=chord * y,
-            pressure_jump=self.scales.pressure * np.interp(x, centres, loads.jump))
+            pressure_jump=self.scales.pressure * np.interp(x, self._centres, loads.jump))
 
     @property
     def reference_deflection(self) -> float:

@@ -50,13 +50,18 @@ def substitute(factors, rows):
     """Replace each right-hand side in ``rows`` (k, m) by its solution."""
     m, width = factors.shape[0], factors.shape[1] - 1
     for k in range(rows.shape[0]):
-        for column in range(m):
-            for i in range(1, min(width, m - 1 - column) + 1):
-                rows[k, column + i] -= factors[column, i] * rows[k, column]
+        value = rows[k, 0]          # the latest result does not go through memory: that is slow
+        for column in range(m - 1):
+            for i in range(2, min(width, m - 1 - column) + 1):
+                rows[k, column + i] -= factors[column, i] * value
+            value = rows[k, column + 1] - factors[column, 1] * value
+            rows[k, column + 1] = value
+        value = 0.0
         for column in range(m - 1, -1, -1):
-            value = rows[k, column] * factors[column, 0]
-            for i in range(min(width, m - 1 - column), 0, -1):      # the latest result last
-                value -= factors[column, i] * rows[k, column + i]
+            right = rows[k, column] * factors[column, 0]
+            for i in range(min(width, m - 1 - column), 1, -1):
+                right -= factors[column, i] * rows[k, column + i]
+            value = right - factors[column, 1] * value
             rows[k, column] = value
 
 

@@ -109,7 +109,8 @@ class Membrane(Taut, Viscous):
 
     def stretch(self, position: np.ndarray) -> np.ndarray:
         """Return the total stretches (n,)."""
-        return _edges(position)[2] * self.stretch_per_length
+        dx, dy = (position[1:] - position[:-1]).T
+        return np.hypot(dx, dy) * self.stretch_per_length
 
     def tension(self, position: np.ndarray, v_squared: float) -> np.ndarray:
         """Return the tensions (n,), force per unit span; negative where the sheet is slack."""

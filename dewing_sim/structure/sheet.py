@@ -99,7 +99,7 @@ def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
         volume = l1 * lateral * l3
         scale = thickness * per_area
         response[0, k] = scale * tau
-        response[1, k] = scale * (modulus - tau) / l1
+        response[1, k] = scale * (modulus - tau) * (per_area * lateral)
         response[2, k] = per_area * slope / thickness
         response[3, k] = thickness * l3
     return response, BALANCED, -1

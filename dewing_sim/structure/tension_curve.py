@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tension over the stretch at one V^2: one curve for all elements of an elastic sheet."""
 
+import math
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
 from dewing_sim.errors import Diverged
@@ -41,3 +43,28 @@ class TensionCurve:
         if abs(differences[-1]) > SMOOTH * abs(differences[0]):
             return None
         return cls(middle, half, differences)
+
+    def along(self, position: np.ndarray, stretch_per_length: np.ndarray,
+              ) -> tuple[np.ndarray, float, bool]:
+        """Return the tensions (n,) between nodes (n + 1, 2), the lowest, and whether all hold.
+
+        They do not if a stretch is beyond the curve.
+        """
+        return _along(position, stretch_per_length, self.middle, self.half, self.differences)
+
+
+@numba.njit(cache=True, error_model='numpy')
+def _along(position, stretch_per_length, middle, half, differences):
+    n, last = stretch_per_length.size, differences.size - 1
+    place, tension = np.empty(n), np.empty(n)
+    for k in range(n):
+        x, y = position[k + 1, 0] - position[k, 0], position[k + 1, 1] - position[k, 1]
+        place[k] = (math.sqrt(x * x + y * y) * stretch_per_length[k] - middle) / half
+        tension[k] = differences[last]
+    for i in range(last - 1, -1, -1):
+        for k in range(n):
+            tension[k] = differences[i] + (place[k] - POINTS[i]) * tension[k]
+    lowest, farthest = tension[0], 0.0
+    for k in range(n):
+        lowest, farthest = min(lowest, tension[k]), max(farthest, abs(place[k]))
+    return tension, lowest, farthest <= 1.0
