@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from dewing_sim import engine_choice, interface
+from dewing_sim import compilation, engine_choice, interface
 from dewing_sim.amplifier import Amplifier
 from dewing_sim.disturbance import wall_pressure
 from dewing_sim.encounter import Encounter
@@ -52,6 +52,7 @@ class Wing:
 
     def __init__(self, case: Case):
         """Prepare the solvers of ``case``."""
+        compilation.without_garbage_collection()
         self.dt = case.numerics.time_step
         self.scales = Scales.of(case.flow, case.membrane.chord)
         self.membrane = elements.make(case.membrane, self.scales)

@@ -1,0 +1,46 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The garbage collector pauses while numba compiles, and only then."""
+
+import gc
+
+import numba
+import pytest
+from numba.core import event
+from numba.core.errors import TypingError
+
+from dewing_sim import compilation
+
+
+class Witness(event.Listener):
+    """Notes whether the collector runs when a compilation starts."""
+
+    def __init__(self):
+        self.seen = []
+
+    def on_start(self, event):
+        self.seen.append(gc.isenabled())
+
+    def on_end(self, event):
+        pass
+
+
+@pytest.mark.parametrize('enabled', [True, False])
+def test_collector_pauses_while_functions_compile(enabled):
+    compilation.without_garbage_collection()
+    witness = Witness()
+    event.register('numba:compile', witness)
+    inner = numba.njit(lambda x: x + 1.0)
+    outer = numba.njit(lambda x: inner(x) + inner(x))
+    (gc.enable if enabled else gc.disable)()
+    try:
+        assert outer(1.0) == 4.0
+        assert gc.isenabled() == enabled
+        with pytest.raises(TypingError):
+            numba.njit(lambda x: x.nothing)(1.0)
+        assert gc.isenabled() == enabled
+    finally:
+        gc.enable()
+        event.unregister('numba:compile', witness)
+    assert len(witness.seen) == 3
+    assert not any(witness.seen)
