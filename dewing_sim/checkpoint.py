@@ -15,7 +15,7 @@ from dewing_sim.parameters import Case, from_mapping, to_mapping
 from dewing_sim.structure.dynamics import Motion
 from dewing_sim.wing import State
 
-FORMAT = 2
+FORMAT = 3
 SECTIONS = ('flow', 'motion')
 
 

@@ -88,20 +88,20 @@ def _(fluid: Conformal, flow: Any) -> FlowField:
     grid, m = fluid.grid, flow.map
     nodes, corners = grid.xi, grid.xi + 0.5 * grid.step
     stream = flow.psi + 2.0 * m.scale * np.outer(
-        np.sinh(grid.face), np.sin(corners - fluid.alpha))
+        np.sin(corners - fluid.alpha), np.sinh(grid.face))
     return FlowField([_patch(_places(m, grid.eta, nodes), flow.w)],
                      [_patch(_places(m, grid.face, corners), stream)])
 
 
 def _places(m: Any, eta: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return z = 2 a cosh(zeta) + sum b_k exp(-k zeta), complex (rows, n)."""
+    """Return z = 2 a cosh(zeta) + sum b_k exp(-k zeta), complex (n, rows)."""
     k = np.arange(len(m.shape))
-    around = np.exp(-1j * np.outer(k, xi))
-    series = (np.exp(-np.outer(eta, k)) * m.shape) @ around
-    return 2.0 * m.scale * np.cosh(eta[:, None] + 1j * xi) + series
+    around = np.exp(-1j * np.outer(xi, k))
+    series = around @ (m.shape[:, None] * np.exp(-np.outer(k, eta)))
+    return 2.0 * m.scale * np.cosh(eta + 1j * xi[:, None]) + series
 
 
 def _patch(place: np.ndarray, value: np.ndarray) -> Patch:
     """Return a patch that closes around the wing."""
-    place, value = (np.concatenate((field, field[:, :1]), axis=1) for field in (place, value))
+    place, value = (np.concatenate((field, field[:1])) for field in (place, value))
     return Patch(place.real, place.imag, value)

@@ -6,3 +6,5 @@ import numba
 
 # Without error_model='numpy' every division carries a branch and no loop becomes SIMD.
 kernel = numba.njit(cache=True, error_model='numpy')
+# Sums become SIMD only where they may be added up in another order.
+summing_kernel = numba.njit(cache=True, error_model='numpy', fastmath={'reassoc', 'nsz'})

@@ -60,8 +60,8 @@ def _(fluid: FiniteVolume, flow: Any) -> tuple[np.ndarray, np.ndarray]:
 @suction_flow.register
 def _(fluid: Conformal, flow: Any) -> tuple[np.ndarray, np.ndarray]:
     upper = slice(len(fluid.grid.xi) // 2 - 1, None, -1)        # from the leading edge
-    place, _ = fluid.geometry.mapping.wall(flow.map)
-    return place.real[upper], -flow.w[0, upper]
+    place = fluid.geometry.mapping.wall(flow.map)[0]
+    return place.real[upper], -flow.w[upper, 0]
 
 
 @dataclass(frozen=True)

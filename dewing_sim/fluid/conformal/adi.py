@@ -8,8 +8,8 @@ of the factorisation, A_eta H^-1 A_xi, would exceed the operator itself and driv
 so that H is bounded below by the geometric mean of both operators (`split_inertia`).  In delta
 form that delays d only, an error of extrapolation.
 
-The sweep along eta runs across all lines at once; the periodic sweep along xi transposes a few
-lines into a buffer, so that both fill SIMD lanes.
+The periodic sweep along xi runs across all rows at once; the sweep along eta turns a few lines at
+a time, so that both fill SIMD lanes.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from dewing_sim.fluid.conformal.transport import UPWIND
 from dewing_sim.fluid.kernels import kernel
 
-LANES = 24
+LANES = 16
 SPLITTING = 0.5
 # The explicit fluxes are of fourth order, with a symbol up to 5/3 times the implicit one; with
 # this factor the mismatch is within 1/4 and extrapolation in time stays stable at any CFL number.
@@ -26,115 +26,96 @@ DISSIPATION = UPWIND / 3.0          # bounds that of the explicit fluxes at ever
 
 
 @kernel
-def split_inertia(h, v, u, width, gap, step, nu):
-    """Return (rows, n) sqrt(H^2 + SPLITTING^2 |A_eta| |A_xi|) from the fluxes and diffusion."""
-    rows, n = h.shape
-    out = np.empty_like(h)
-    around = nu / step
-    per_step = 2.0 * SPLITTING**2 / step
-    for j in range(1, rows):
-        across = nu / gap[j]
-        per_width = 2.0 / width[j]
-        before = abs(u[j, n - 1])
-        for i in range(n):
-            here = abs(u[j, i])
-            a_eta = per_width * (across + 0.25 * (abs(v[j, i]) + abs(v[j - 1, i])))
-            a_xi = per_step * (around + 0.25 * (here + before))
-            out[j, i] = np.sqrt(h[j, i] * h[j, i] + a_eta * a_xi)
-            before = here
-    return out
+def split_inertia(h2, v, u, grid, nu, dt, first, stop, out):
+    """Write (n, rows) sqrt(H^2 + SPLITTING^2 |A_eta| |A_xi|), 1 in row 0."""
+    n, rows = h2.shape
+    inertia, per_step = 1.5 / dt, 1.0 / grid.step
+    for i in range(first, stop):
+        before = i - 1 if i else n - 1
+        out[i, 0] = 1.0
+        for j in range(1, rows):
+            a_eta = grid.per_width[j] * (nu * grid.per_gap[j]
+                                         + 0.25 * (abs(v[i, j]) + abs(v[i, j - 1])))
+            a_xi = per_step * (nu * per_step + 0.25 * (abs(u[i, j]) + abs(u[before, j])))
+            h = inertia * h2[i, j]
+            out[i, j] = np.sqrt(h * h + 4.0 * SPLITTING**2 * a_eta * a_xi)
 
 
 @kernel
-def sweep_eta(r, h, v, width, gap, nu):
-    """Solve (H + A_eta) t = r for rows 1 and outwards, in place; returns H t in ``r``.
+def sweep_eta(r, h, v, grid, nu, first, stop):
+    """Solve (H + A_eta) t = r for rows 1 and outwards of a few lines, in place; r becomes H t.
 
-    ``h`` (rows, n) is H, ``v`` (rows, n) the flux through the outer face of each row.
+    ``h`` (n, rows) is H, ``v`` (n, rows) the flux through the outer face of each row.  There may be
+    at most LANES lines: they are turned, so that the sweep runs across them.
     """
-    rows, n = r.shape
-    ratio = np.zeros((rows, n))
+    rows, lanes = r.shape[1], stop - first
+    t, flux = np.empty((rows, LANES)), np.empty((rows, LANES))
+    diagonal, ratio = np.empty((rows, LANES)), np.empty((rows, LANES))
+    for k in range(lanes):
+        i = first + k
+        for j in range(rows):
+            t[j, k], flux[j, k], diagonal[j, k] = r[i, j], v[i, j], h[i, j]
+        ratio[0, k], t[0, k] = 0.0, 0.0
     for j in range(1, rows):
-        last = j == rows - 1
-        scale = 1.0 / width[j]
-        inner = nu / gap[j - 1] * scale
-        outer = 0.0 if last else nu / gap[j] * scale
-        open_side = 0.0 if last else scale
-        for i in range(n):
-            below, above = v[j - 1, i], v[j, i]
-            lower = inner + scale * (0.5 * CONVECTION * below + DISSIPATION * abs(below))
+        per_width = grid.per_width[j]
+        open_side = 0.0 if j == rows - 1 else per_width
+        inner, outer = nu * grid.per_gap[j - 1] * per_width, nu * grid.per_gap[j] * open_side
+        for k in range(lanes):
+            below, above = flux[j - 1, k], flux[j, k]
+            lower = inner + per_width * (0.5 * CONVECTION * below + DISSIPATION * abs(below))
             upper = outer - open_side * (0.5 * CONVECTION * above - DISSIPATION * abs(above))
-            pivot = 1.0 / (h[j, i] + lower + upper - lower * ratio[j - 1, i])
-            ratio[j, i] = upper * pivot
-            r[j, i] = (r[j, i] + lower * r[j - 1, i]) * pivot
+            pivot = 1.0 / (diagonal[j, k] + lower + upper - lower * ratio[j - 1, k])
+            ratio[j, k] = upper * pivot
+            t[j, k] = (t[j, k] + lower * t[j - 1, k]) * pivot
     for j in range(rows - 2, 0, -1):
-        for i in range(n):
-            r[j, i] += ratio[j, i] * r[j + 1, i]
-    for j in range(1, rows):
-        for i in range(n):
-            r[j, i] *= h[j, i]
+        for k in range(lanes):
+            t[j, k] += ratio[j, k] * t[j + 1, k]
+    for k in range(lanes):
+        i = first + k
+        for j in range(1, rows):
+            r[i, j] = t[j, k] * h[i, j]
 
 
 @kernel
-def sweep_xi(r, h, u, step, nu):
-    """Solve (H + A_xi) d = r on the periodic rows 1 and outwards, in place.
+def sweep_xi(r, h, u, grid, nu, high, corner):
+    """Solve (H + A_xi) d = r on the periodic rows, in place; row 0 is to be without flux.
 
-    ``u`` (rows, n) is the flux through the face after each node.
+    ``u`` (n, rows) is the flux through the face after each node; ``high`` and ``corner`` (n, rows)
+    are scratch: the upper diagonal and the response to the last unknown.
     """
-    rows, n = r.shape
-    flux = np.empty((n, LANES))
-    diagonal = np.empty((n, LANES))
-    d = np.empty((n, LANES))
-    low = np.empty((n, LANES))
-    high = np.empty((n, LANES))
-    corner = np.empty((n, LANES))           # response to the last unknown of the line
-    diffusion, per_step = nu / (step * step), 1.0 / step
-    for start in range(1, rows, LANES):
-        first = min(start, rows - LANES)    # the last block repeats some lines
-        done = start - first
-        for i in range(n):
-            for k in range(LANES):
-                flux[i, k] = u[first + k, i]
-                diagonal[i, k] = h[first + k, i]
-                d[i, k] = r[first + k, i]
-        for i in range(n):
-            before = i - 1 if i else n - 1
-            for k in range(LANES):
-                a, b = flux[before, k] * per_step, flux[i, k] * per_step
-                low[i, k] = diffusion + 0.5 * CONVECTION * a + DISSIPATION * abs(a)
-                high[i, k] = diffusion - 0.5 * CONVECTION * b + DISSIPATION * abs(b)
-                diagonal[i, k] += low[i, k] + high[i, k]
-        _periodic(low, high, diagonal, d, corner)
-        for i in range(n):
-            for k in range(done, LANES):
-                r[first + k, i] = d[i, k]
-
-
-@kernel
-def _periodic(low, high, diagonal, d, corner):
-    """Solve diagonal x_i - low x_{i-1} - high x_{i+1} = d_i for all lanes; ``high`` is scratch."""
-    n, lanes = d.shape
-    last = n - 1
-    for k in range(lanes):
-        pivot = 1.0 / diagonal[0, k]
-        high[0, k] *= pivot
-        d[0, k] *= pivot
-        corner[0, k] = low[0, k] * pivot
-    for i in range(1, last):
-        for k in range(lanes):
-            pivot = 1.0 / (diagonal[i, k] - low[i, k] * high[i - 1, k])
-            high[i, k] *= pivot
-            d[i, k] = (d[i, k] + low[i, k] * d[i - 1, k]) * pivot
-            corner[i, k] = low[i, k] * corner[i - 1, k] * pivot
-    for k in range(lanes):
-        corner[last - 1, k] += high[last - 1, k]
-    for i in range(last - 2, -1, -1):
-        for k in range(lanes):
-            d[i, k] += high[i, k] * d[i + 1, k]
-            corner[i, k] += high[i, k] * corner[i + 1, k]
-    for k in range(lanes):
-        d[last, k] = ((d[last, k] + low[last, k] * d[last - 1, k] + high[last, k] * d[0, k])
-                      / (diagonal[last, k] - low[last, k] * corner[last - 1, k]
-                         - high[last, k] * corner[0, k]))
+    n, rows = r.shape
+    last, lines = n - 1, grid.lines
+    diffusion = nu / (grid.step * grid.step)
+    half, upwind = 0.5 * CONVECTION / grid.step, DISSIPATION / grid.step
+    for j in range(rows):
+        a, b = u[last, j], u[0, j]
+        low, up = (diffusion + half * a + upwind * abs(a), diffusion - half * b + upwind * abs(b))
+        pivot = 1.0 / (h[0, j] + low + up)
+        high[0, j], r[0, j], corner[0, j] = up * pivot, r[0, j] * pivot, low * pivot
+    before = 0
+    for i in lines[1:last]:
+        for j in range(rows):
+            a, b = u[before, j], u[i, j]
+            low, up = (diffusion + half * a + upwind * abs(a),
+                       diffusion - half * b + upwind * abs(b))
+            pivot = 1.0 / (h[i, j] + low + up - low * high[before, j])
+            high[i, j] = up * pivot
+            r[i, j] = (r[i, j] + low * r[before, j]) * pivot
+            corner[i, j] = low * corner[before, j] * pivot
+        before = i
+    for j in range(rows):
+        corner[last - 1, j] += high[last - 1, j]
+    after = last - 1
+    for i in lines[:after][::-1]:
+        for j in range(rows):
+            r[i, j] += high[i, j] * r[after, j]
+            corner[i, j] += high[i, j] * corner[after, j]
+        after = i
+    for j in range(rows):
+        a, b = u[last - 1, j], u[last, j]
+        low, up = (diffusion + half * a + upwind * abs(a), diffusion - half * b + upwind * abs(b))
+        r[last, j] = ((r[last, j] + low * r[last - 1, j] + up * r[0, j])
+                      / (h[last, j] + low + up - low * corner[last - 1, j] - up * corner[0, j]))
     for i in range(last):
-        for k in range(lanes):
-            d[i, k] += corner[i, k] * d[last, k]
+        for j in range(rows):
+            r[i, j] += corner[i, j] * r[last, j]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.noslip import Influence
 from dewing_sim.fluid.conformal.poisson import Poisson
@@ -23,25 +24,26 @@ class Edges:
     """For one place of both edges: no slip and the share of second-order extrapolation."""
 
     influence: Influence
-    share: np.ndarray               # (rows, n)
+    share: np.ndarray               # (n, rows)
 
 
 class EdgeTable:
     """All places visited so far."""
 
-    def __init__(self, poisson: Poisson, nu: float, dt: float):
+    def __init__(self, grid: Grid, poisson: Poisson, nu: float, dt: float):
         """Prepare the table for one viscosity and dt (c/U)."""
-        self._poisson, self._nu, self._dt = poisson, nu, dt
+        self._grid, self._poisson, self._nu, self._dt = grid, poisson, nu, dt
         self._table: dict[tuple[int, int], Edges] = {}
 
     def near(self, m: Map) -> Edges:
         """Return the entry nearest to the edges of ``m``."""
-        spacing = SPACING * self._poisson.grid.step
+        spacing = SPACING * self._grid.step
         place = (round(m.edges[1] / spacing), round((m.edges[2] - np.pi) / spacing))
         if place not in self._table:
             self._table[place] = self._make(place[0] * spacing, np.pi + place[1] * spacing)
         return self._table[place]
 
     def _make(self, trailing: float, leading: float) -> Edges:
-        return Edges(Influence.of(self._poisson, trailing, leading, self._nu, self._dt),
-                     extrapolation_share(self._poisson.grid, trailing, leading, self._dt))
+        return Edges(Influence.of(self._grid, self._poisson, trailing, leading, self._nu,
+                                  self._dt),
+                     extrapolation_share(self._grid, trailing, leading, self._dt))

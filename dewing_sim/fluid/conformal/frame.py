@@ -15,10 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
-from dewing_sim.fluid.conformal.geometry import Surroundings
+from dewing_sim.fluid.conformal.geometry import Surroundings, WallMotion
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.mapping import Map, Mapping
+from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.onset import Onset
+
+STILL = np.empty((0, 0))
 
 
 @dataclass(frozen=True)
@@ -29,14 +31,13 @@ class Frame:
     corner: np.ndarray              # (n,) stream function over 2 a sinh(eta) half a step on
     node: np.ndarray                # (n,) the same at the nodes
     grid: Grid
-    mapping: Mapping
 
     @classmethod
-    def of(cls, onset: Onset, grid: Grid, mapping: Mapping) -> 'Frame':
+    def of(cls, onset: Onset, grid: Grid) -> 'Frame':
         """Return the frame of an onset flow."""
         speed, angle = abs(onset.stream), np.angle(onset.stream)
         return cls(onset, speed * np.sin(grid.xi + 0.5 * grid.step - angle),
-                   speed * np.sin(grid.xi - angle), grid, mapping)
+                   speed * np.sin(grid.xi - angle), grid)
 
     @property
     def turn(self) -> float:
@@ -44,42 +45,31 @@ class Frame:
         return -self.onset.pitch_rate
 
     def grid_stream(self, m: Map) -> np.ndarray:
-        """Return the stream function (rows, n) of turning at the corners."""
+        """Return the stream function (n, rows) of turning at the corners, empty without."""
+        if not self.turn:
+            return STILL
+        xi, eta = self.grid.xi[:, None] + 0.5 * self.grid.step, self.grid.face
         k = self.grid.wavenumbers[:-1]
-        modes = m.shape * np.exp(-np.outer(self.grid.face, k) - 1j * k * self.grid.step)
-        corner = self.grid.face[:, None] + 1j * (self.grid.xi + 0.5 * self.grid.step)
-        arm = (2.0 * m.scale * np.cosh(corner) + fft.fft(modes, len(self.grid.xi), axis=1)
-               - self.onset.pivot)
+        series = np.exp(-1j * np.outer(xi, k)) @ (m.shape[:, None] * np.exp(-np.outer(k, eta)))
+        arm = 2.0 * m.scale * np.cosh(eta + 1j * xi) + series - self.onset.pivot
         return -0.5 * self.turn * np.abs(arm)**2
 
-    def wall_fluxes(self, around: Surroundings, velocity: np.ndarray,
-                    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return U and V (n,) of the membrane with column velocities within these axes."""
-        u, v = around.wall_fluxes(velocity)
-        if not self.turn:
-            return u, v
-        flux = 1j * self.turn * self._arm(around.map) * np.conj(around.slope)
-        return u + flux.imag, v + flux.real
+    def wall_motion(self, around: Surroundings, velocity: np.ndarray, acceleration: np.ndarray,
+                    ) -> WallMotion:
+        """Return the motion of the membrane of which the axes see the velocity and acceleration.
 
-    def acceleration(self, around: Surroundings, velocity: np.ndarray) -> np.ndarray | float:
-        """Return the normal acceleration (n,) that the axes and the stream add, times |z_zeta|.
-
-        ``velocity`` (columns,) is that of the membrane within the axes.
+        Both are averages over the columns (columns,).
         """
-        onset = self.onset
+        within = around.wall_motion(velocity, acceleration)
+        onset, turn = self.onset, self.turn
         if onset.stream_rate == 0.0 and not onset.is_turning:
-            return 0.0
-        arm = self._arm(around.map)
+            return within
+        arm = around.place - onset.pivot
+        flux = 1j * turn * arm * np.conj(around.slope)
+        product = arm.imag * within.speed
+        coriolis = fft.irfft(1j * self.grid.wavenumbers * fft.rfft(product), len(product))
         relative = -1j * onset.pitch_acceleration * arm - onset.stream_rate
-        product = arm.imag * around.on_nodes(velocity)
-        along = fft.irfft(1j * self.grid.wavenumbers * fft.rfft(product), len(product))
-        return (relative * np.conj(around.slope)).real - self.turn * along
-
-    def wall_speed(self, around: Surroundings, velocity: np.ndarray) -> np.ndarray:
-        """Return the speed (n,) of the membrane relative to the pivot."""
-        within = around.on_nodes(velocity)
-        return np.abs(within + self.turn * self._arm(around.map)) if self.turn else within
-
-    def _arm(self, m: Map) -> np.ndarray:
-        """Return z - z_p (n,) on the membrane."""
-        return self.mapping.wall(m)[0] - self.onset.pivot
+        return WallMotion(within.u + flux.imag, within.v + flux.real,
+                          within.acceleration + (relative * np.conj(around.slope)).real
+                          - turn * coriolis,
+                          np.abs(within.speed + turn * arm))

@@ -1,36 +1,41 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the flow needs of the map: metric and grid flux in the strip, and the wall on its nodes."""
+"""The map that follows the membrane, and what happens between its columns and the nodes."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from dewing_sim.fluid.base import Wall
-from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.mapping import Map, Mapping
+from dewing_sim.fluid.conformal.exterior import Exterior
+from dewing_sim.fluid.conformal.mapping import Map, Mapping, iterate, require_settled, wall
+from dewing_sim.fluid.conformal.stockham import Buffers
 from dewing_sim.fluid.kernels import kernel
 
 
-@dataclass(frozen=True)
-class Surroundings:
-    """The strip around one shape of the membrane."""
+class WallMotion(NamedTuple):
+    """Motion of the membrane at the nodes, each (n,)."""
+
+    u: np.ndarray                   # flux U of the moving membrane
+    v: np.ndarray                   # flux V
+    acceleration: np.ndarray        # Re(a conj(z_zeta))
+    speed: np.ndarray
+
+
+class Surroundings(NamedTuple):
+    """One shape of the membrane, and how it moves."""
 
     map: Map
-    h2: np.ndarray                  # (rows, n) |z_zeta|^2
-    grid_flux: np.ndarray | None    # (rows, n) z_t conj(z_zeta), None for a map at rest
-    slope: np.ndarray               # (n,) z_zeta on the membrane
+    shape_rate: np.ndarray          # (modes,) of b_k
+    scale_rate: float               # of a
+    place: np.ndarray               # (n,) z on the membrane
+    slope: np.ndarray               # (n,) z_zeta there
     angles: np.ndarray              # (n,) theta of the nodes, x = (1 + cos theta) / 2
     shift: np.ndarray               # (n,) theta - xi
 
-    def on_nodes(self, values: np.ndarray) -> np.ndarray:
-        """Return column averages (columns,) interpolated to the nodes of both sides (n,)."""
-        return _columns_to_nodes(values, self.angles)
-
-    def wall_fluxes(self, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return U and V (n,) of the membrane moving along y with column velocities."""
-        rise = self.on_nodes(velocity)
-        return rise * self.slope.real, rise * self.slope.imag
+    def wall_motion(self, velocity: np.ndarray, acceleration: np.ndarray) -> WallMotion:
+        """Return the motion along y with averages over the columns (columns,)."""
+        return WallMotion(*_wall_motion(velocity, acceleration, self.angles, self.slope))
 
     def jump(self, pressure: np.ndarray) -> np.ndarray:
         """Return pressure below less above (columns,) from the pressure on the nodes (n,)."""
@@ -40,43 +45,37 @@ class Surroundings:
 class Geometry:
     """Maps of one grid with time step ``dt`` (c/U)."""
 
-    def __init__(self, grid: Grid, dt: float):
-        """Prepare the map's transforms."""
-        self.grid = grid
-        self.dt = dt
-        self.mapping = Mapping(grid)
-        self._resting: Surroundings | None = None       # the last one
+    def __init__(self, exterior: Exterior, dt: float):
+        """Prepare for one grid."""
+        self.mapping = Mapping(exterior)
+        self._dt, self._exterior = dt, exterior
+        self._buffers = Buffers.of(len(exterior.xi))
 
-    def follow(self, wall: Wall, height: np.ndarray, now: Map, before: Map) -> Surroundings:
-        """Return the map that follows ``wall``, moving from ``now``, of ``height``."""
-        if np.array_equal(wall.height, height):
-            m = now
-            if np.array_equal(before.shape, now.shape):
-                return self.at_rest(now)
-        else:
-            near = Map(2.0 * now.shape - before.shape, 2.0 * now.edges - before.edges)
-            m = self.mapping.follow(wall.height, near)
-        scale, shape = ((3.0 * new - 4.0 * old + older) / (2.0 * self.dt) for new, old, older in (
-            (m.scale, now.scale, before.scale), (m.shape, now.shape, before.shape)))
-        return self._around(m, *self.mapping.metric_and_flux(m, scale, shape))
+    def follow(self, membrane: Wall, height: np.ndarray, now: Map, before: Map) -> Surroundings:
+        """Return the map that follows the membrane, moving from ``now``, of ``height``."""
+        moves = not (membrane.height is height or (membrane.height == height).all())
+        change, shape, edges, *others = _follow(
+            membrane.height, moves, *now, *before, self._dt, self._exterior, self._buffers)
+        require_settled(change)
+        return Surroundings(Map(shape, edges), *others)
 
     def at_rest(self, m: Map) -> Surroundings:
-        """Return the strip around a membrane at rest."""
-        known = self._resting
-        if known is None or not (np.array_equal(known.map.shape, m.shape)
-                                 and np.array_equal(known.map.edges, m.edges)):
-            known = self._around(m, self.mapping.metric(m), None)
-            self._resting = known
-        return known
+        """Return a membrane at rest."""
+        return Surroundings(m, np.zeros_like(m.shape), 0.0, *self.mapping.wall(m))
 
-    def jump(self, m: Map, pressure: np.ndarray) -> np.ndarray:
-        """Return pressure below less above (columns,) from the pressure on the nodes (n,)."""
-        return _nodes_to_columns(pressure, self.mapping.angles(m) - self.grid.xi)
 
-    def _around(self, m: Map, h2: np.ndarray, grid_flux: np.ndarray | None) -> Surroundings:
-        angles = self.mapping.angles(m)
-        return Surroundings(m, h2, grid_flux, self.mapping.slope(m), angles,
-                            angles - self.grid.xi)
+@kernel
+def _follow(height, moves, shape, edges, shape_before, edges_before, dt, exterior, b):
+    """Return the last change of the map, its shape, edges and rates, and the membrane."""
+    new_shape, new_edges, change = shape.copy(), edges.copy(), 0.0
+    if moves:
+        new_shape += shape - shape_before
+        new_edges += edges - edges_before
+        change = iterate(height, new_shape, new_edges, exterior, b)
+    shape_rate = (3.0 * new_shape - 4.0 * shape + shape_before) / (2.0 * dt)
+    scale_rate = (3.0 * new_edges[0] - 4.0 * edges[0] + edges_before[0]) / (2.0 * dt)
+    place, slope, angles, shift = wall(new_shape, new_edges, exterior, b)
+    return change, new_shape, new_edges, shape_rate, scale_rate, place, slope, angles, shift
 
 
 @kernel
@@ -87,24 +86,23 @@ def _weights(s):
 
 
 @kernel
-def _columns_to_nodes(values, angles):
+def _wall_motion(velocity, acceleration, angles, slope):
     """Interpolate cubically; columns lie at theta = pi - (c + 1/2) d theta, even in theta."""
-    columns = values.size
-    padded = np.empty(columns + 4)      # theta may leave [0, pi] by half a column
-    for c in range(columns):
-        padded[c + 2] = values[c]
-    for m in range(2):
-        padded[1 - m] = values[m]
-        padded[columns + 2 + m] = values[columns - 1 - m]
-    out = np.empty(angles.size)
-    for i in range(angles.size):
-        angle = min(angles[i], 2.0 * np.pi - angles[i])
-        position = columns - angle * columns / np.pi - 0.5
+    columns, n = velocity.size, angles.size
+    u, v, normal, speed = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    for i in range(n):
+        position = columns - min(angles[i], 2.0 * np.pi - angles[i]) * columns / np.pi - 0.5
         first = int(np.floor(position))
-        a, b, c, d = _weights(position - first)
-        out[i] = (a * padded[first + 1] + b * padded[first + 2] + c * padded[first + 3]
-                  + d * padded[first + 4])
-    return out
+        weights = _weights(position - first)
+        rise, change = 0.0, 0.0
+        for m in range(4):              # theta may leave [0, pi] by half a column
+            c = first - 1 + m
+            c = -1 - c if c < 0 else min(c, 2 * columns - 1 - c)
+            rise += weights[m] * velocity[c]
+            change += weights[m] * acceleration[c]
+        u[i], v[i], speed[i] = rise * slope[i].real, rise * slope[i].imag, rise
+        normal[i] = change * slope[i].imag
+    return u, v, normal, speed
 
 
 @kernel

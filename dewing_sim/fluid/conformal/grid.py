@@ -5,11 +5,13 @@
 xi is periodic and uniform: 0 at the trailing edge, pi at the leading edge, the upper side between.
 Nodes lie halfway, xi_i = (i + 1/2) dxi, so that none falls on an edge.  eta grows geometrically
 from the membrane, eta_j = eta(j); cell faces are at eta(j + 1/2), and the first node lies on the
-membrane, in a half cell.  Arrays over the strip have the shape (rows, n), eta first.
+membrane, in a half cell.  Arrays over the strip have the shape (n, rows): lines
+of constant xi one after another, each from the membrane outwards.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
@@ -26,12 +28,23 @@ class Preset:
 
 
 PRESETS = {
-    'realtime': Preset(80, 60, 0.0095),
+    'realtime': Preset(64, 72, 0.0095),
     'fast': Preset(96, 72, 0.008),
     'standard': Preset(128, 96, 0.006),
     'reference': Preset(192, 128, 0.005),
 }
 PRESETS['fine'] = PRESETS['reference']      # a name of both engines
+
+
+class Strip(NamedTuple):
+    """The grid as compiled code knows it."""
+
+    step: float                     # in xi
+    width: np.ndarray               # (rows,) of the cells, in eta
+    per_width: np.ndarray           # (rows,) its inverse
+    per_gap: np.ndarray             # (rows,) inverse of the distance to the next row
+    sinh_face: np.ndarray           # (rows,)
+    lines: np.ndarray               # (n,) 0, 1, ...: see `adi.sweep_xi`
 
 
 @dataclass(frozen=True)
@@ -84,6 +97,12 @@ class Grid:
     def gap(self) -> np.ndarray:
         """Distance from each row to the next (rows,), the last one to the boundary."""
         return np.diff(self.eta, append=self.face[-1])
+
+    @property
+    def strip(self) -> Strip:
+        """The grid for compiled code."""
+        return Strip(self.step, self.width, 1.0 / self.width, 1.0 / self.gap, np.sinh(self.face),
+                     np.arange(len(self.xi)))
 
 
 def _geometric(first: float, ratio: float, index) -> np.ndarray:

@@ -9,21 +9,20 @@ cos(xi) - x_0 its conjugate function, so that y(xi) = Y(x(xi)) is a fixed-point 
 contracts for every membrane less than some 25 % cambered; a and x_0 keep the edges at x = 1 and 0.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
 
 from dewing_sim.errors import NotConverged
-from dewing_sim.fluid.conformal.grid import Grid
+from dewing_sim.fluid.conformal.exterior import Exterior, wall_series
+from dewing_sim.fluid.conformal.stockham import Buffers, transform
 from dewing_sim.fluid.kernels import kernel
 
 TOLERANCE = 1.0e-10         # chords, of the last change; the next would be far smaller
 PASSES = 300
 
 
-@dataclass(frozen=True)
-class Map:
+class Map(NamedTuple):
     """One shape; complex ``shape`` (modes,) holds b_k, ``edges`` a, trailing and leading xi."""
 
     shape: np.ndarray
@@ -36,22 +35,16 @@ class Map:
 
 
 class Mapping:
-    """Solves for maps on one grid and evaluates them there."""
+    """Solves for maps on one grid and evaluates them on the membrane."""
 
-    def __init__(self, grid: Grid):
-        """Prepare the transforms of ``grid``."""
-        k = grid.wavenumbers[:-1]
-        self.grid = grid
-        self._cos = np.cos(np.outer(k, grid.xi))
-        self._sin = np.sin(np.outer(k, grid.xi))
-        self._waves = np.ascontiguousarray(np.stack((self._sin.T, self._cos.T), axis=1))
-        self._exp = np.exp(-np.outer(grid.eta, k) - 0.5j * k * grid.step)
-        self._k = k
-        self._axes = (np.sinh(grid.eta), np.cosh(grid.eta), np.cos(grid.xi), np.sin(grid.xi))
+    def __init__(self, exterior: Exterior):
+        """Prepare for the grid of ``exterior``."""
+        self._exterior = exterior
+        self._buffers = Buffers.of(len(exterior.xi))
 
     def flat(self) -> Map:
         """Return the map of a flat plate."""
-        shape = np.zeros(len(self._k), dtype=complex)
+        shape = np.zeros(len(self._exterior.start), dtype=complex)
         shape[0] = 0.5
         return Map(shape, np.array([0.25, 0.0, np.pi]))
 
@@ -60,107 +53,42 @@ class Mapping:
 
         Raises `NotConverged` for a shape that this map cannot describe.
         """
-        shape, edges = near.shape.copy(), near.edges.copy()
-        change = _iterate(np.ascontiguousarray(height), shape, edges, self._cos, self._sin,
-                          self._waves, TOLERANCE, PASSES)
-        if not (change <= TOLERANCE and np.isfinite(edges).all()):
-            raise NotConverged(f'conformal map: the shape still changes by {change:.3g} chords '
-                               f'after {PASSES} passes; the membrane is too strongly cambered '
-                               'for this engine')
-        return Map(shape, edges)
+        m = Map(near.shape.copy(), near.edges.copy())
+        require_settled(iterate(height, m.shape, m.edges, self._exterior, self._buffers))
+        return m
 
-    def metric(self, m: Map) -> np.ndarray:
-        """Return h^2 = |z_zeta|^2 (rows, n) on the nodes."""
-        return _metric(self._series(np.array([self._k * m.shape]))[0], m.scale, *self._axes)
+    def wall(self, m: Map) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return z, z_zeta, theta and theta - xi (n,) on the membrane.
 
-    def metric_and_flux(self, m: Map, scale: float, shape: np.ndarray,
-                        ) -> tuple[np.ndarray, np.ndarray]:
-        """Return h^2 and the grid flux z_t conj(z_zeta) for the rates of a and of b_k."""
-        slope, rate = self._series(np.array([self._k * m.shape, shape]))
-        return _metric_and_flux(slope, rate, m.scale, scale, *self._axes)
+        The angle theta of a node, x = (1 + cos theta) / 2, is below pi on the upper side.
+        """
+        return wall(m.shape, m.edges, self._exterior, self._buffers)
 
-    def wall(self, m: Map) -> tuple[np.ndarray, np.ndarray]:
-        """Return z and z_zeta (n,) on the membrane."""
-        place = 2.0 * m.scale * self._axes[2] + _on_wall(m.shape, self._cos, self._sin)
-        return place, self.slope(m)
 
-    def slope(self, m: Map) -> np.ndarray:
-        """Return z_zeta (n,) on the membrane."""
-        series = _on_wall(self._k * m.shape, self._cos, self._sin)
-        return 2.0j * m.scale * self._axes[3] - series
-
-    def angles(self, m: Map) -> np.ndarray:
-        """Return theta (n,) of the nodes: x = (1 + cos theta) / 2, upper side below pi."""
-        return _angles(_abscissa(m.shape, m.edges, self._cos, self._sin), m.edges, self.grid.xi)
-
-    def _series(self, modes: np.ndarray) -> np.ndarray:
-        """Return sum_k modes_k exp(-k zeta) (sets, rows, n) for each set of modes (sets, k)."""
-        spectrum = _spectra(self._exp, modes, len(self.grid.xi))
-        return fft.fft(spectrum, axis=2, overwrite_x=True)
+def require_settled(change: float) -> None:
+    """Raise `NotConverged` if the last change of the map is too large (or no number)."""
+    if not change <= TOLERANCE:
+        raise NotConverged(f'conformal map: the shape still changes by {change:.3g} chords '
+                           f'after {PASSES} passes; the membrane is too strongly cambered '
+                           'for this engine')
 
 
 @kernel
-def _spectra(exp, modes, n):
-    rows, count = exp.shape
-    out = np.zeros((modes.shape[0], rows, n), dtype=np.complex128)
-    for m in range(modes.shape[0]):
-        for j in range(rows):
-            for k in range(count):
-                out[m, j, k] = exp[j, k] * modes[m, k]
-    return out
-
-
-@kernel
-def _metric(slope, scale, sinh, cosh, cos, sin):
-    """Return |2 a sinh(zeta) - slope|^2."""
-    rows, n = slope.shape
-    h2 = np.empty((rows, n))
-    for j in range(rows):
-        s, c = 2.0 * scale * sinh[j], 2.0 * scale * cosh[j]
-        for i in range(n):
-            x, y = s * cos[i] - slope[j, i].real, c * sin[i] - slope[j, i].imag
-            h2[j, i] = x * x + y * y
-    return h2
-
-
-@kernel
-def _metric_and_flux(slope, rate, scale, scale_rate, sinh, cosh, cos, sin):
-    """Return |s|^2 and (2 a_t cosh(zeta) + rate) conj(s) of s = 2 a sinh(zeta) - slope."""
-    rows, n = slope.shape
-    h2, flux = np.empty((rows, n)), np.empty((rows, n), dtype=np.complex128)
-    for j in range(rows):
-        s, c = 2.0 * scale * sinh[j], 2.0 * scale * cosh[j]
-        s_rate, c_rate = 2.0 * scale_rate * sinh[j], 2.0 * scale_rate * cosh[j]
-        for i in range(n):
-            x, y = s * cos[i] - slope[j, i].real, c * sin[i] - slope[j, i].imag
-            u, v = c_rate * cos[i] + rate[j, i].real, s_rate * sin[i] + rate[j, i].imag
-            h2[j, i] = x * x + y * y
-            flux[j, i] = complex(u * x + v * y, v * x - u * y)
-    return h2, flux
-
-
-@kernel
-def _on_wall(modes, cos, sin):
-    """Return sum_k modes_k exp(-i k xi), (n,)."""
-    count, n = cos.shape
-    real, imag = np.zeros(n), np.zeros(n)
-    for k in range(count):
-        p, q = modes[k].real, modes[k].imag
-        for i in range(n):
-            real[i] += p * cos[k, i] + q * sin[k, i]
-            imag[i] += q * cos[k, i] - p * sin[k, i]
-    return real + 1j * imag
-
-
-@kernel
-def _abscissa(shape, edges, cos, sin):
-    """Return x (n,) of the nodes on the membrane."""
-    x = 2.0 * edges[0] * cos[1] + shape[0].real
-    for k in range(1, shape.size):
-        p, q = shape[k].real, shape[k].imag
-        for i in range(x.size):
-            x[i] += p * cos[k, i] + q * sin[k, i]
-    return x
+def wall(shape, edges, exterior, b):
+    """Return z, z_zeta, theta and theta - xi (n,) on the membrane."""
+    n = exterior.xi.size
+    place, slope = np.empty(n, dtype=np.complex128), np.empty(n, dtype=np.complex128)
+    theta = np.empty(n)
+    x, y = wall_series(shape, exterior, b)
+    for i in range(n):
+        place[i] = complex(x[i] + 2.0 * edges[0] * exterior.cos[i], y[i])
+        angle = np.arccos(min(1.0, max(-1.0, 2.0 * place[i].real - 1.0)))
+        upper = edges[1] < exterior.xi[i] < edges[2]
+        theta[i] = angle if upper else 2.0 * np.pi - angle
+    x, y = wall_series(shape * np.arange(shape.size), exterior, b)
+    for i in range(n):
+        slope[i] = complex(-x[i], 2.0 * edges[0] * exterior.sin[i] - y[i])
+    return place, slope, theta, theta - exterior.xi
 
 
 @kernel
@@ -194,46 +122,39 @@ def _pin(shape, edges):
 
 
 @kernel
-def _iterate(height, shape, edges, cos, sin, waves, tolerance, passes):
+def iterate(height, shape, edges, exterior, b):
     """Repeat y <- Y(x), x <- conjugate of y until y settles; return its last change."""
-    modes, n = cos.shape
-    y = np.zeros(n)
-    for k in range(modes):
-        p, q = shape[k].real, shape[k].imag
-        for i in range(n):
-            y[i] += q * cos[k, i] - p * sin[k, i]
-    change = np.inf
-    for _ in range(passes):
-        x = _abscissa(shape, edges, cos, sin)
+    n = exterior.xi.size
+    y, change = wall_series(shape, exterior, b)[1].copy(), np.inf
+    for _ in range(PASSES):
+        x, _ = wall_series(shape, exterior, b)
         change = 0.0
         for i in range(n):
-            new = interpolate_even(height, np.arccos(min(1.0, max(-1.0, 1.0 - 2.0 * x[i]))))
+            place = x[i] + 2.0 * edges[0] * exterior.cos[i]
+            new = interpolate_even(height, np.arccos(min(1.0, max(-1.0, 1.0 - 2.0 * place))))
             change = max(change, abs(new - y[i]))
             y[i] = new
         x0, scale = shape[0].real, edges[0]
-        odd, even = np.zeros(modes), np.zeros(modes)
-        for i in range(n):
-            for k in range(modes):
-                odd[k] += y[i] * waves[i, 0, k]
-                even[k] += y[i] * waves[i, 1, k]
-        for k in range(modes):
-            shape[k] = complex(-odd[k], even[k]) * (2.0 / n)
+        _conjugate(y, exterior, b, shape)
         shape[0] = complex(x0, 0.5 * shape[0].imag)
         x0 = _pin(shape, edges)
         change = max(change, abs(x0 - shape[0].real), abs(edges[0] - scale))
         shape[0] = complex(x0, shape[0].imag)
-        if not change > tolerance:
+        if not change > TOLERANCE:
             break
-    return change
+    return change if np.isfinite(edges.sum()) else np.nan
 
 
 @kernel
-def _angles(x, edges, xi):
-    theta = np.empty(x.size)
-    for i in range(x.size):
-        angle = np.arccos(min(1.0, max(-1.0, 2.0 * x[i] - 1.0)))
-        theta[i] = angle if edges[1] < xi[i] < edges[2] else 2.0 * np.pi - angle
-    return theta
+def _conjugate(y, exterior, b, shape):
+    """Write 2 i / n sum_j y_j exp(i k xi_j): the series with the imaginary part ``y`` (n,)."""
+    n = y.size
+    b.re[:n] = y
+    b.im[:n] = 0.0
+    re, im = transform(b, n, 1, exterior.plan.full)
+    for k in range(shape.size):
+        mode = exterior.start[k] * complex(re[k, 0], im[k, 0])
+        shape[k] = complex(mode.imag, mode.real) * (2.0 / n)
 
 
 @kernel

@@ -15,7 +15,7 @@ it is gone.  The latter alone would do, but near the edges its w jumps where the
 changes place, and the lift with it.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -26,62 +26,50 @@ from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.kernels import kernel
 
 BLOCK = 4                   # modes added at once; divides the number of nodes
+NEGLIGIBLE_SLIP = 1.0e-6
+LARGEST_SLIP = 1.5      # shed in one step: 0.8 at an impulsive start, 0.15 later in a sound run
 NEGLIGIBLE = 1.0e-8         # share of a wall vorticity beyond which its response is cut off
 
 
-@dataclass(frozen=True)
-class Influence:
+class Influence(NamedTuple):
     """Responses in the eigenbasis along xi."""
 
     modes: np.ndarray               # (n, n) modes[m] is the m-th eigenvector
-    decay: np.ndarray               # (rows, n) response of each mode, 1 at the membrane
-    active: np.ndarray              # (rows,) modes that reach each row
+    decay: np.ndarray               # (reach, n) response of each mode, 1 at the membrane
+    active: np.ndarray              # (reach,) modes that reach each row
     inverse: np.ndarray             # (n, n), transposed: slip to coefficients of the modes
-    h2: np.ndarray                  # (rows, n) of the arc
+    h2: np.ndarray                  # (n, rows) of the arc
 
     @classmethod
-    def of(cls, poisson: Poisson, trailing: float, leading: float, nu: float, dt: float,
-           ) -> 'Influence':
+    def of(cls, grid: Grid, poisson: Poisson, trailing: float, leading: float, nu: float,
+           dt: float) -> 'Influence':
         """Return the influence of wall vorticity for edges at xi = ``trailing``, ``leading``."""
-        grid = poisson.grid
         h2 = _metric_of_arc(grid, trailing, leading)
-        values, vectors = eigh(_diffusion(grid, 1.5 * h2[0] / dt, nu))
+        values, vectors = eigh(_diffusion(grid, 1.5 * h2[:, 0] / dt, nu))
         # Next to a strongly bent membrane the mean falls below 0: some mode would resonate.
-        potential = np.maximum(np.mean(h2 - h2[0], axis=1), 0.0)
+        potential = np.maximum(np.mean(h2 - h2[:, :1], axis=0), 0.0)
         decay = _responses(grid, values, 1.5 / dt * potential, nu)
         decay[decay < NEGLIGIBLE] = 0.0
         active = np.count_nonzero(decay, axis=1)
-        reach = np.count_nonzero(active)
-        decay, active = decay[:reach], active[:reach]
+        reach = 2 * ((np.count_nonzero(active) + 1) // 2)       # even, see `shed`
         matrix = np.zeros_like(vectors)
         for j in range(reach):
-            vorticity = h2[j][:, None] * vectors * decay[j]
-            weight = grid.width[j] * poisson.decay[j]
-            matrix += fft.irfft(weight[:, None] * fft.rfft(vorticity, axis=0), len(values), axis=0)
-        return cls(np.ascontiguousarray(vectors.T), decay, active,
-                   np.ascontiguousarray(np.linalg.inv(matrix).T), h2[:reach])
-
-    def remove(self, slip: np.ndarray, h2: np.ndarray, w: np.ndarray, q: np.ndarray,
-               exactly: bool) -> int:
-        """Add to ``w`` and ``q`` = h^2 w what removes ``slip`` (n,); return the rows reached.
-
-        Either the w of the arc, smooth in the shape of the membrane, or ``exactly`` its h^2 w.
-        """
-        coefficients = _multiply(self.inverse, slip)
-        _add_response(self.modes, self.decay, self.active, coefficients,
-                      self.h2 if exactly else h2, h2, w, q)
-        return len(self.decay)
+            vorticity = h2[:, j, None] * vectors * decay[j]
+            weight = poisson.decay[j, :len(values) // 2 + 1, None]
+            matrix += fft.irfft(weight * fft.rfft(vorticity, axis=0), len(values), axis=0)
+        return cls(np.ascontiguousarray(vectors.T), decay[:reach], active[:reach],
+                   np.ascontiguousarray(np.linalg.inv(matrix).T), h2)
 
 
 def _metric_of_arc(grid: Grid, trailing: float, leading: float) -> np.ndarray:
-    """Return h^2 (rows, n) of the circular arc with these edges, by Joukowski's map.
+    """Return h^2 (n, rows) of the circular arc with these edges, by Joukowski's map.
 
     z = Z + c^2 / Z, with the circle Z = a exp(zeta) + i a sin(b) through Z = +-c and
     c = a cos(b) = 1/4.
     """
     bend = 0.5 * (leading - np.pi - trailing)
-    xi = grid.xi - 0.5 * (leading - np.pi + trailing)
-    eta = grid.eta[:, None]
+    xi = grid.xi[:, None] - 0.5 * (leading - np.pi + trailing)
+    eta = grid.eta
     pole = 1.0 + np.sin(bend) * np.exp(-eta) * (2.0 * np.sin(xi) + np.sin(bend) * np.exp(-eta))
     zeros = (np.cosh(eta) - np.cos(xi + bend)) * (np.cosh(eta) + np.cos(xi - bend))
     return 0.25 * zeros / (np.cos(bend) * pole)**2
@@ -108,29 +96,32 @@ def _responses(grid: Grid, values: np.ndarray, potential: np.ndarray, nu: float)
 
 
 @kernel
-def _multiply(transposed, vector):
-    result = np.zeros(vector.size)
-    for k in range(vector.size):
-        for i in range(vector.size):
-            result[i] -= vector[k] * transposed[k, i]
-    return result
+def remove(influence, slip, h2, w, h2_w, exactly):
+    """Add to ``w`` and ``h2_w`` = h^2 w what removes ``slip`` (n,); return the rows reached.
 
-
-@kernel
-def _add_response(modes, decay, active, coefficients, h2_arc, h2, w, q):
-    """Add the modes with a decay along eta; ascending eigenvalues reach less and less far."""
-    rows, n = decay.shape
-    shed = np.empty(n)
-    for j in range(rows):
-        for i in range(n):
-            shed[i] = 0.0
-        for m in range(0, active[j], BLOCK):        # beyond the active modes decay is zero
+    Either the w of the arc, smooth in the shape of the membrane, or ``exactly`` its h^2 w.
+    """
+    decay, modes = influence.decay, influence.modes
+    reach, n = decay.shape
+    coefficients, shed = np.zeros(n), np.zeros((reach, n))
+    for k in range(n):
+        for m in range(n):
+            coefficients[m] -= slip[k] * influence.inverse[k, m]
+    for j in range(0, reach, 2):            # two rows and four modes at once: fewer loads
+        for m in range(0, influence.active[j], BLOCK):      # beyond them decay is zero
             a, b = coefficients[m] * decay[j, m], coefficients[m + 1] * decay[j, m + 1]
             c, d = coefficients[m + 2] * decay[j, m + 2], coefficients[m + 3] * decay[j, m + 3]
+            e, f = coefficients[m] * decay[j + 1, m], coefficients[m + 1] * decay[j + 1, m + 1]
+            g, h = (coefficients[m + 2] * decay[j + 1, m + 2],
+                    coefficients[m + 3] * decay[j + 1, m + 3])
             for i in range(n):
-                shed[i] += (a * modes[m, i] + b * modes[m + 1, i]
-                            + c * modes[m + 2, i] + d * modes[m + 3, i])
-        for i in range(n):
-            change = h2_arc[j, i] * shed[i]
-            q[j, i] += change
-            w[j, i] += change / h2[j, i]
+                p, q, r, s = modes[m, i], modes[m + 1, i], modes[m + 2, i], modes[m + 3, i]
+                shed[j, i] += a * p + b * q + c * r + d * s
+                shed[j + 1, i] += e * p + f * q + g * r + h * s
+    h2_shed = influence.h2 if exactly else h2
+    for i in range(n):
+        for j in range(reach):
+            change = h2_shed[i, j] * shed[j, i]
+            h2_w[i, j] += change
+            w[i, j] += change / h2[i, j]
+    return reach

@@ -7,39 +7,40 @@ psi' is the stream function less that of the free stream.  With q = h^2 omega it
     psi_k'' - k^2 psi_k = -q_k,   psi_k given at the membrane and decaying as exp(-k eta) outside.
 
 The operator is the same for every shape of the membrane.  Mode 0 carries the circulation: its
-slope at infinity is Gamma / 2 pi, with Gamma the (clockwise) circulation of wing and wake.
+slope at infinity is Gamma / 2 pi, with Gamma the (clockwise) circulation of wing and wake; the
+modes are sums over n nodes, so that ``outer`` = n Gamma / 2 pi in all that follows.  The modes of
+a field are real rows (rows, 2 modes), first all real parts, then all imaginary parts.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.fluid.conformal.fourier import Line
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.kernels import kernel
 
 
-@dataclass(frozen=True)
-class Poisson:
+class Poisson(NamedTuple):
     """Factors of the tridiagonal systems, one a mode, and what is derived from them."""
 
-    grid: Grid
-    line: Line
-    pivot: np.ndarray               # (rows, modes), row 0 unused
-    ratio: np.ndarray               # (rows, modes)
-    decay: np.ndarray               # (rows, modes) discrete exp(-k eta): 1 at the membrane
-    slope: np.ndarray               # (modes,) d psi / d eta at the membrane for unit psi there
+    width: np.ndarray               # (rows,) of the cells
+    conductance: np.ndarray         # (rows,) inverse of the distance to the next row
+    pivot: np.ndarray               # (rows, 2 modes), row 0 unused
+    ratio: np.ndarray               # (rows, 2 modes)
+    decay: np.ndarray               # (rows, 2 modes) discrete exp(-k eta) times the width
+    slope: np.ndarray               # (2 modes,) d psi / d eta at the membrane for unit psi there
     corner: np.ndarray              # (rows, 4) weights from rows to the faces in eta
     wall: np.ndarray                # (4,) weights of psi_0, slope_0, psi_1, psi_2 for face 0
-    shift: np.ndarray               # (modes,) half a step in xi
-    beyond: np.ndarray              # (modes,) from the last row to the boundary
+    shift: np.ndarray               # (modes,) half a step in xi, complex
+    beyond: np.ndarray              # (2 modes,) from the last row to the boundary
+    last_gap: float                 # between them
     integral: np.ndarray            # (modes,) 1 / (i k), 0 for mode 0 and the sawtooth
 
     @classmethod
     def of(cls, grid: Grid) -> 'Poisson':
         """Factor the systems of ``grid``."""
         k = grid.wavenumbers
-        beyond = np.exp(-k * (grid.face[-1] - grid.eta[-1]))
+        beyond = np.exp(-k * grid.gap[-1])
         pivot, ratio = _factor(grid, k, beyond)
         decay = np.cumprod(np.concatenate((np.ones((1, len(k))), ratio[1:])), axis=0)
         slope = (decay[1] - 1.0) / grid.gap[0] - k**2 * grid.width[0]
@@ -48,32 +49,11 @@ class Poisson:
         corner, wall = _interpolation(grid)
         integral = np.zeros(len(k), dtype=complex)
         integral[1:-1] = 1.0 / (1j * k[1:-1])
-        return cls(grid, Line.of(len(grid.xi)), pivot, ratio, decay, slope, corner, wall, shift,
-                   beyond, integral)
-
-    def wall_value(self, v_wall: np.ndarray) -> np.ndarray:
-        """Return the modes of psi' at the membrane for the flux V (n,) through it."""
-        return self.line.modes(v_wall) * self.integral
-
-    def wall_slope(self, q_hat: np.ndarray, psi_wall: np.ndarray, circulation: float,
-                   ) -> np.ndarray:
-        """Return d psi' / d eta (modes,) at the membrane without solving for psi."""
-        outer = len(self.grid.xi) * circulation / (2.0 * np.pi)
-        return _wall_slope(self.slope, psi_wall, outer, self.decay, self.grid.width, q_hat)
-
-    def solve(self, q_hat: np.ndarray, psi_wall: np.ndarray, circulation: float) -> np.ndarray:
-        """Return the modes of psi' on the rows."""
-        outer = len(self.grid.xi) * circulation / (2.0 * np.pi)
-        return _solve(self.pivot, self.ratio, self.grid.width, 1.0 / self.grid.gap, q_hat,
-                      psi_wall, outer)
-
-    def corners(self, psi_hat: np.ndarray, slope_wall: np.ndarray, circulation: float,
-                ) -> np.ndarray:
-        """Return the modes of psi' at the cell corners, (face j, half a step beyond node i)."""
-        outer = (len(self.grid.xi) * circulation / (2.0 * np.pi)
-                 * (self.grid.face[-1] - self.grid.eta[-1]))
-        return _corners(psi_hat, slope_wall, self.corner, self.wall, self.shift, self.beyond,
-                        outer)
+        decay *= grid.width[:, None]
+        pivot, ratio, decay, slope, beyond = (np.concatenate((real, real), axis=-1)
+                                              for real in (pivot, ratio, decay, slope, beyond))
+        return cls(grid.width, 1.0 / grid.gap, pivot, ratio, decay, slope, corner, wall, shift,
+                   beyond, grid.gap[-1], integral)
 
 
 def _factor(grid: Grid, k: np.ndarray, beyond: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -108,48 +88,59 @@ def _interpolation(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 @kernel
-def _wall_slope(slope, psi_wall, outer, decay, width, q_hat):
-    rows, modes = decay.shape
-    total = slope * psi_wall
-    total[0] += outer
+def wall_slope(p, q_hat, psi_wall, outer):
+    """Return d psi' / d eta (modes,) at the membrane without solving for psi."""
+    rows, twice = p.decay.shape
+    modes = twice // 2
+    total = np.zeros(twice)
     for j in range(rows):
-        for k in range(modes):
-            total[k] += (decay[j, k] * width[j]) * q_hat[j, k]
-    return total
+        for k in range(twice):
+            total[k] += p.decay[j, k] * q_hat[j, k]
+    slope = np.empty(modes, dtype=np.complex128)
+    for k in range(modes):
+        slope[k] = p.slope[k] * psi_wall[k] + complex(total[k], total[modes + k])
+    slope[0] += outer
+    return slope
 
 
 @kernel
-def _solve(pivot, ratio, width, conductance, q_hat, psi_wall, outer):
-    rows, modes = pivot.shape
-    psi = np.empty((rows, modes), dtype=np.complex128)
-    last = rows - 1
-    for k in range(modes):
-        psi[last, k] = width[last] * q_hat[last, k] * pivot[last, k]
-    psi[last, 0] += outer * pivot[last, 0]
+def solve(p, q_hat, psi_wall, outer, psi):
+    """Write the modes of psi' on the rows."""
+    rows, twice = p.pivot.shape
+    modes, last = twice // 2, rows - 1
+    for k in range(twice):
+        psi[last, k] = p.width[last] * q_hat[last, k] * p.pivot[last, k]
+    psi[last, 0] += outer * p.pivot[last, 0]
     for j in range(last - 1, 0, -1):
-        for k in range(modes):
-            psi[j, k] = (width[j] * q_hat[j, k] + conductance[j] * psi[j + 1, k]) * pivot[j, k]
+        width, conductance = p.width[j], p.conductance[j]
+        for k in range(twice):
+            psi[j, k] = (width * q_hat[j, k] + conductance * psi[j + 1, k]) * p.pivot[j, k]
     for k in range(modes):
-        psi[0, k] = psi_wall[k]
+        psi[0, k], psi[0, modes + k] = psi_wall[k].real, psi_wall[k].imag
     for j in range(1, rows):
-        for k in range(modes):
-            psi[j, k] += ratio[j, k] * psi[j - 1, k]
-    return psi
+        for k in range(twice):
+            psi[j, k] += p.ratio[j, k] * psi[j - 1, k]
 
 
 @kernel
-def _corners(psi, slope_wall, corner, wall, shift, beyond, outer):
-    rows, modes = psi.shape
-    out = np.empty((rows, modes), dtype=np.complex128)
+def to_corners(p, psi, slope_wall, outer, out):
+    """Write the modes of psi' at the cell corners, (face j, half a step beyond node i)."""
+    rows, twice = psi.shape
+    modes = twice // 2
     for k in range(modes):
-        out[0, k] = shift[k] * (wall[0] * psi[0, k] + wall[1] * slope_wall[k]
-                                + wall[2] * psi[1, k] + wall[3] * psi[2, k])
+        c = p.wall[1]
+        out[0, k], out[0, modes + k] = c * slope_wall[k].real, c * slope_wall[k].imag
+    for k in range(twice):
+        out[0, k] += p.wall[0] * psi[0, k] + p.wall[2] * psi[1, k] + p.wall[3] * psi[2, k]
+        out[rows - 1, k] = p.beyond[k] * psi[rows - 1, k]
     for j in range(1, rows - 1):
         a = min(j - 1, rows - 4)
+        c0, c1, c2, c3 = p.corner[j, 0], p.corner[j, 1], p.corner[j, 2], p.corner[j, 3]
+        for k in range(twice):
+            out[j, k] = (c0 * psi[a, k] + c1 * psi[a + 1, k]
+                         + c2 * psi[a + 2, k] + c3 * psi[a + 3, k])
+    for j in range(rows):
         for k in range(modes):
-            out[j, k] = shift[k] * (corner[j, 0] * psi[a, k] + corner[j, 1] * psi[a + 1, k]
-                                    + corner[j, 2] * psi[a + 2, k] + corner[j, 3] * psi[a + 3, k])
-    for k in range(modes):
-        out[rows - 1, k] = shift[k] * beyond[k] * psi[rows - 1, k]
-    out[rows - 1, 0] += outer
-    return out
+            x, y, c, s = out[j, k], out[j, modes + k], p.shift[k].real, p.shift[k].imag
+            out[j, k], out[j, modes + k] = c * x - s * y, s * x + c * y
+    out[rows - 1, 0] += outer * p.last_gap

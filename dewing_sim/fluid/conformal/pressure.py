@@ -12,22 +12,19 @@ first term is the added mass.  The others pass a filter of fourth order in k dxi
 the two sides differs up to the very edge, a step in xi that would ring.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
 
-from dewing_sim.fluid.conformal.fourier import Line
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.conformal.stockham import line_modes, line_values, transform
+from dewing_sim.fluid.kernels import kernel, summing_kernel
 
 
-@dataclass(frozen=True)
-class WallPressure:
+class WallPressure(NamedTuple):
     """Quadrature of exp(-k eta) over the rows and the inverse of the wave number."""
 
-    line: Line
-    weight: np.ndarray              # (rows, modes)
+    weight: np.ndarray              # (modes, rows)
     inverse: np.ndarray             # (modes,) 1 / k, 0 for mode 0
     viscous: np.ndarray             # (modes,) i nu
 
@@ -38,48 +35,55 @@ class WallPressure:
         inverse = np.zeros(len(k))
         inverse[1:] = 1.0 / k[1:]
         faces = np.concatenate(([0.0], grid.face))
-        weight = -np.diff(np.exp(-np.outer(faces, k)), axis=0) * inverse
+        weight = -np.diff(np.exp(-np.outer(k, faces)), axis=1) * inverse[:, None]
         viscous = np.full(len(k), 1j * nu)
         viscous[0] = 0.0
         smooth = 1.0 - np.sin(0.5 * k * grid.step)**4
-        return cls(Line.of(len(grid.xi)), weight * smooth, inverse, viscous * smooth)
-
-    def __call__(self, vorticity: np.ndarray, lamb: np.ndarray, acceleration: np.ndarray,
-                 ) -> np.ndarray:
-        """Return P (n,) on the membrane less its mean; ``lamb`` (rows, n) is w (U - i V), lost."""
-        spectrum = fft.fft(lamb, axis=1, overwrite_x=True)
-        head = (self.inverse * self.line.modes(acceleration)
-                + self.viscous * self.line.modes(vorticity[0])
-                - _integral(self.weight, spectrum))
-        return self.line.values(head)
-
-    def added_mass(self, flux: np.ndarray) -> np.ndarray:
-        """Return the change of P (n,) by a normal acceleration A (n,)."""
-        return self.line.values(self.inverse * self.line.modes(flux))
+        return cls(weight * smooth[:, None], inverse, viscous * smooth)
 
 
 @kernel
-def _integral(weight, spectrum):
-    rows, modes = weight.shape
-    total = np.zeros(modes, dtype=np.complex128)
-    for j in range(rows):
-        for k in range(modes):
-            total[k] += weight[j, k] * spectrum[j, k]
-    return total
+def added_mass(p, flux, b, plan):
+    """Return the change of P (n,) by a normal acceleration A (n,)."""
+    return line_values(p.inverse * line_modes(flux, b, plan), b, plan)
 
 
 @kernel
-def lamb_vector(w, v, u, v_wall, u_wall):
-    """Return w (U - i V) (rows, n) on the nodes from the fluxes through the cell faces."""
-    rows, n = w.shape
-    out = np.empty((rows, n), dtype=np.complex128)
+def wall_head(p, w, v, u, v_wall, u_wall, acceleration, b, plan):
+    """Return P (n,) on the membrane less its mean, for its normal ``acceleration`` A (n,).
+
+    ``v`` and ``u`` (n, rows) are the fluxes through the cell faces.
+    """
+    n, rows = w.shape
+    _lamb_vector(w, v, u, v_wall, u_wall, b)
+    re, im = transform(b, n, rows, plan.full)
+    head = np.empty(p.inverse.size, dtype=np.complex128)
+    for k in range(head.size):
+        head[k] = -complex(_dot(p.weight[k], re[k]), _dot(p.weight[k], im[k]))
+    head += p.inverse * line_modes(acceleration, b, plan)
+    head += p.viscous * line_modes(w[:, 0], b, plan)
+    return line_values(head, b, plan)
+
+
+@kernel
+def _lamb_vector(w, v, u, v_wall, u_wall, b):
+    """Write w (U - i V) (n, rows) on the nodes from the fluxes through the cell faces."""
+    n, rows = w.shape
+    re, im = b.re[:n * rows].reshape((n, rows)), b.im[:n * rows].reshape((n, rows))
     for i in range(n):
-        out[0, i] = w[0, i] * complex(u_wall[i], -v_wall[i])
-    for j in range(1, rows):
-        out[j, 0] = 0.5 * w[j, 0] * complex(u[j, 0] + u[j, n - 1], -v[j, 0] - v[j - 1, 0])
-        for i in range(1, n):
-            out[j, i] = 0.5 * w[j, i] * complex(u[j, i] + u[j, i - 1], -v[j, i] - v[j - 1, i])
-    return out
+        before = i - 1 if i else n - 1
+        re[i, 0], im[i, 0] = w[i, 0] * u_wall[i], -w[i, 0] * v_wall[i]
+        for j in range(1, rows):
+            re[i, j] = 0.5 * w[i, j] * (u[i, j] + u[before, j])
+            im[i, j] = -0.5 * w[i, j] * (v[i, j] + v[i, j - 1])
+
+
+@summing_kernel
+def _dot(a, b):
+    total = 0.0
+    for j in range(a.size):
+        total += a[j] * b[j]
+    return total
 
 
 def force(pressure: np.ndarray, vorticity: np.ndarray, slope: np.ndarray, nu: float,

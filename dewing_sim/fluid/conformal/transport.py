@@ -5,7 +5,9 @@
     (h^2 w)_t + [(V - G_V) w]_eta + [(U - G_U) w]_xi = nu (w_xixi + w_etaeta),
 
 V = psi_xi, U = -psi_eta, and G_V + i G_U = z_t conj(z_zeta) is the exact flux of the grid.  Fluxes
-are differences of psi at the cell corners: free of divergence to round-off.
+are differences of psi at the cell corners: free of divergence to round-off.  Functions work on the
+lines from ``first`` to before ``stop``, so that a few lines can pass through all of them while they
+are at hand.
 """
 
 import numpy as np
@@ -15,140 +17,115 @@ from dewing_sim.fluid.kernels import kernel
 
 FIRST_ORDER = 0.65      # radius about an edge, per dt, of first-order extrapolation
 UPWIND = 0.5            # share of the dissipation of third-order upwind fluxes
+SEVEN, ONE = 7.0 / 12.0, 1.0 / 12.0     # weights of fourth order; a division takes far longer
 
 
 def extrapolation_share(grid: Grid, trailing: float, leading: float, dt: float) -> np.ndarray:
-    """Return the share (rows, n) of second-order extrapolation, less than 1 near the edges.
+    """Return the share (n, rows) of second-order extrapolation, less than 1 near the edges.
 
     There, at xi = ``trailing`` and ``leading``, the CFL number is so large that only first order
     is stable.
     """
-    distances = [0.5 * np.abs(np.cosh(grid.eta[:, None] + 1j * (grid.xi - edge)) - 1.0)
+    distances = [0.5 * np.abs(np.cosh(grid.eta + 1j * (grid.xi[:, None] - edge)) - 1.0)
                  for edge in (trailing, leading)]
     return np.clip(np.minimum(*distances) / (FIRST_ORDER * dt) - 1.0, 0.0, 1.0)
 
 
 @kernel
-def extrapolate(now, before, share):
-    """Return now + share (now - before)."""
-    out = np.empty_like(now)
-    for j in range(now.shape[0]):
-        for i in range(now.shape[1]):
-            out[j, i] = now[j, i] + share[j, i] * (now[j, i] - before[j, i])
-    return out
+def extrapolate(now, before, share, out):
+    """Write now + share (now - before)."""
+    for i in range(now.shape[0]):
+        for j in range(now.shape[1]):
+            out[i, j] = now[i, j] + share[i, j] * (now[i, j] - before[i, j])
 
 
 @kernel
-def fluxes(psi, sinh_face, sin_corner, step, width):
-    """Return V (rows, n) through the outer face of each row, U (rows, n) after each node.
+def fluxes(psi, sin_corner, scale, grid, first, stop, v, u):
+    """Write V through the outer face of each row and U after each node, both (n, rows).
 
-    ``psi`` is psi' at the corners; the stream adds 2 a sinh(eta) sin(xi - alpha), given as the
-    product of ``sinh_face`` and ``sin_corner``.
+    ``psi`` is psi' at the corners; the stream adds 2 a sinh(eta) sin(xi - alpha), the last factor
+    being ``sin_corner`` (n,) and a the ``scale``.
     """
-    rows, n = psi.shape
-    v, u = np.empty((rows, n)), np.empty((rows, n))
-    per_step = 1.0 / step
-    for j in range(rows):
-        s = sinh_face[j] * per_step
-        v[j, 0] = ((psi[j, 0] - psi[j, n - 1]) * per_step
-                   + s * (sin_corner[0] - sin_corner[n - 1]))
-        for i in range(1, n):
-            v[j, i] = ((psi[j, i] - psi[j, i - 1]) * per_step
-                       + s * (sin_corner[i] - sin_corner[i - 1]))
-    for i in range(n):
-        u[0, i] = 0.0
-    for j in range(1, rows):
-        per_width = -1.0 / width[j]
-        s = (sinh_face[j] - sinh_face[j - 1]) * per_width
-        for i in range(n):
-            u[j, i] = (psi[j, i] - psi[j - 1, i]) * per_width + s * sin_corner[i]
-    return v, u
+    n, rows = psi.shape
+    per_step, sinh_face = 1.0 / grid.step, grid.sinh_face
+    for i in range(first, stop):
+        before = i - 1 if i else n - 1
+        rise = 2.0 * scale * (sin_corner[i] - sin_corner[before])
+        corner = 2.0 * scale * sin_corner[i]
+        for j in range(rows):
+            v[i, j] = (psi[i, j] - psi[before, j] + rise * sinh_face[j]) * per_step
+        u[i, 0] = 0.0
+        for j in range(1, rows):
+            u[i, j] = (psi[i, j - 1] - psi[i, j]
+                       + corner * (sinh_face[j - 1] - sinh_face[j])) * grid.per_width[j]
 
 
 @kernel
-def subtract_grid_flux(grid_flux, v, u):
-    """Subtract G_V and G_U, given on the nodes as G_V + i G_U, from the fluxes in place."""
-    rows, n = v.shape
-    padded = np.empty(n + 3)
-    for j in range(rows):
-        above = min(j + 1, rows - 1)
-        for i in range(n):
-            v[j, i] -= 0.5 * (grid_flux[j, i].real + grid_flux[above, i].real)
-            padded[i + 1] = grid_flux[j, i].imag
-        padded[0], padded[n + 1], padded[n + 2] = padded[n], padded[1], padded[2]
-        for i in range(n):
-            u[j, i] -= (9.0 * (padded[i + 1] + padded[i + 2]) - padded[i] - padded[i + 3]) / 16.0
+def subtract_grid_flux(grid_v, grid_u, first, stop, v, u):
+    """Subtract G_V and G_U (n, rows), given on the nodes, from the fluxes in place."""
+    n, rows = v.shape
+    for i in range(first, stop):
+        a, b, c = i - 1 if i else n - 1, (i + 1) % n, (i + 2) % n
+        for j in range(rows - 1):
+            v[i, j] -= 0.5 * (grid_v[i, j] + grid_v[i, j + 1])
+        v[i, rows - 1] -= grid_v[i, rows - 1]
+        for j in range(rows):
+            u[i, j] -= (9.0 * (grid_u[i, j] + grid_u[b, j]) - grid_u[a, j] - grid_u[c, j]) / 16.0
 
 
 @kernel
-def subtract_convection(w, v, u, step, width, out):
-    """Subtract the convective outflow of each cell of rows 1 and outwards from ``out``.
+def _flux(a, b, c, d, velocity):
+    """Return the flux from b to c by 4th-order central and 3rd-order upwind differences."""
+    return (velocity * (SEVEN * (b + c) - ONE * (a + d))
+            + ONE * UPWIND * abs(velocity) * (3.0 * (b - c) - a + d))
 
-    Returns the vorticity that leaves through the outer boundary.
+
+@kernel
+def _across(w, v, grid, nu, flux):
+    """Write the flux along eta, diffusion included, through the outer face of each cell (rows,).
+
+    It is of second order next to the membrane and the outer boundary, through which nothing
+    diffuses and nothing comes in.
     """
-    rows, n = w.shape
-    flux = np.empty((2, n))
-    padded = np.empty(n + 3)
-    along = np.empty(n + 1)
-    eighth = UPWIND / 12.0
+    last = w.size - 1
+    for j in range(1, last - 1):
+        flux[j] = (_flux(w[j - 1], w[j], w[j + 1], w[j + 2], v[j])
+                   + nu * grid.per_gap[j] * (w[j] - w[j + 1]))
+    for j in (0, last - 1):
+        flux[j] = 0.5 * v[j] * (w[j] + w[j + 1]) + nu * grid.per_gap[j] * (w[j] - w[j + 1])
+    flux[last] = max(v[last], 0.0) * w[last]
+
+
+@kernel
+def _along(w, i, u, spread, flux):
+    """Write the flux along xi, diffusion included, from line ``i`` to the next (rows,)."""
+    n, rows = w.shape
+    before, after, beyond = (i - 1) % n, (i + 1) % n, (i + 2) % n
     for j in range(rows):
-        old, new = (j + 1) % 2, j % 2
-        if 0 < j < rows - 2:
-            for i in range(n):
-                a, b, c, d = w[j - 1, i], w[j, i], w[j + 1, i], w[j + 2, i]
-                flux[new, i] = (v[j, i] * (7.0 * (b + c) - a - d) / 12.0
-                                + eighth * abs(v[j, i]) * (3.0 * (b - c) - a + d))
-        elif j < rows - 1:
-            for i in range(n):
-                flux[new, i] = 0.5 * v[j, i] * (w[j, i] + w[j + 1, i])
-        else:
-            for i in range(n):
-                flux[new, i] = max(v[j, i], 0.0) * w[j, i]
-        if j == 0:
-            continue
-        padded[0] = w[j, n - 1]
-        for i in range(n):
-            padded[i + 1] = w[j, i]
-        padded[n + 1] = w[j, 0]
-        padded[n + 2] = w[j, 1]
-        for i in range(n):
-            a, b, c, d = padded[i], padded[i + 1], padded[i + 2], padded[i + 3]
-            along[i + 1] = (u[j, i] * (7.0 * (b + c) - a - d) / 12.0
-                            + eighth * abs(u[j, i]) * (3.0 * (b - c) - a + d))
-        along[0] = along[n]
-        per_width, per_step = 1.0 / width[j], 1.0 / step
-        for i in range(n):
-            out[j, i] -= ((flux[new, i] - flux[old, i]) * per_width
-                          + (along[i + 1] - along[i]) * per_step)
+        flux[j] = (_flux(w[before, j], w[i, j], w[after, j], w[beyond, j], u[i, j])
+                   + spread * (w[i, j] - w[after, j]))
+
+
+@kernel
+def residual(w, h2, q, q_before, v, u, grid, nu, dt, first, stop, out):
+    """Write the imbalance of the vorticity equation (n, rows), 0 in row 0, for the guess ``w``.
+
+    It is -(3 h^2 w - 4 q_n + q_n-1) / (2 dt) less the outflow of each cell.  Returns the vorticity
+    that leaves these lines through the outer boundary.
+    """
+    n, rows = w.shape
+    across, along = np.empty(rows), np.empty((2, rows))     # the last two lines in turn
+    per_dt, per_step = 1.0 / dt, 1.0 / grid.step
     outflow = 0.0
-    for i in range(n):
-        outflow += flux[(rows - 1) % 2, i]
-    return outflow * step
-
-
-@kernel
-def add_diffusion(w, gap, width, step, nu, out):
-    """Add nu Laplace w to rows 1 and outwards of ``out``."""
-    rows, n = w.shape
-    x = nu / step**2
-    for j in range(1, rows):
-        last = j == rows - 1
-        inner = nu / (gap[j - 1] * width[j])
-        outer = 0.0 if last else nu / (gap[j] * width[j])
-        above = j if last else j + 1
-        for i in range(n):
-            out[j, i] += inner * (w[j - 1, i] - w[j, i]) + outer * (w[above, i] - w[j, i])
-        out[j, 0] += x * (w[j, n - 1] - 2.0 * w[j, 0] + w[j, 1])
-        out[j, n - 1] += x * (w[j, n - 2] - 2.0 * w[j, n - 1] + w[j, 0])
-        for i in range(1, n - 1):
-            out[j, i] += x * (w[j, i - 1] - 2.0 * w[j, i] + w[j, i + 1])
-
-
-@kernel
-def inertia(h, w, q, q_before, dt):
-    """Return -(3 h^2 w - 4 q_n + q_n-1) / (2 dt), with H = 3 h^2 / (2 dt) given; 0 in row 0."""
-    out = np.zeros_like(w)
-    for j in range(1, w.shape[0]):
-        for i in range(w.shape[1]):
-            out[j, i] = (4.0 * q[j, i] - q_before[j, i]) / (2.0 * dt) - h[j, i] * w[j, i]
-    return out
+    _along(w, (first - 1) % n, u, nu * per_step, along[first % 2])
+    for i in range(first, stop):
+        before, after = i % 2, (i + 1) % 2
+        _across(w[i], v[i], grid, nu, across)
+        _along(w, i, u, nu * per_step, along[after])
+        outflow += across[rows - 1]
+        out[i, 0] = 0.0
+        for j in range(1, rows):
+            out[i, j] = ((2.0 * q[i, j] - 0.5 * q_before[i, j] - 1.5 * h2[i, j] * w[i, j]) * per_dt
+                         - (across[j] - across[j - 1]) * grid.per_width[j]
+                         - (along[after, j] - along[before, j]) * per_step)
+    return outflow * grid.step
