@@ -1,10 +1,36 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""How the flow kernels are compiled: IEEE division without checks, cached on disk."""
+"""How the flow kernels are compiled, IEEE division without checks, cached on disk; and scratch.
+
+What keeps a loop in SIMD lanes, found with the remarks of the compiler:
+
+* The inner loop runs along the last axis of each array, 64 values or more.
+* Before a loop the compiler compares the places of all arrays, up to some ten of them, or gives up.
+* A loop that carries values from line to line would fail that test, which is made once for all
+  lines: take the lines from an array of indices, and it is made for each line.
+* Arrays are not exchanged by name in a loop; take two rows of one array in turn.
+"""
+
+import math
 
 import numba
+import numpy as np
+
+PAGE = 512                  # doubles in 4 KB
 
 # Without error_model='numpy' every division carries a branch and no loop becomes SIMD.
 kernel = numba.njit(cache=True, error_model='numpy')
 # Sums become SIMD only where they may be added up in another order.
 summing_kernel = numba.njit(cache=True, error_model='numpy', fastmath={'reassoc', 'nsz'})
+
+
+def scratch(count: int, *shape: int) -> list[np.ndarray]:
+    """Return arrays of zeros that start at different places of a page.
+
+    A processor takes a load for one of what it has just stored at the same place of another page,
+    and waits: fields of a whole number of pages would cost up to twice the time.
+    """
+    size = math.prod(shape)
+    stride = (size + PAGE - 1) // PAGE * PAGE + PAGE // count // 8 * 8
+    block = np.zeros(count * stride)
+    return [block[k * stride:k * stride + size].reshape(shape) for k in range(count)]

@@ -15,6 +15,7 @@ class Exterior(NamedTuple):
     """The strip as the series see it."""
 
     decay: np.ndarray               # (modes, rows) exp(-k eta), k < n / 2
+    on_wall: np.ndarray             # (modes, 1) the same at the membrane: one
     start: np.ndarray               # (modes,) exp(-i k xi_0)
     sinh: np.ndarray                # (rows,) of eta
     cosh: np.ndarray
@@ -27,7 +28,7 @@ class Exterior(NamedTuple):
     def of(cls, grid: Grid) -> 'Exterior':
         """Return the tables of ``grid``."""
         k = grid.wavenumbers[:-1]
-        return cls(np.exp(-np.outer(k, grid.eta)), np.exp(-1j * k * grid.xi[0]),
+        return cls(np.exp(-np.outer(k, grid.eta)), np.ones((len(k), 1)), np.exp(-1j * k * grid.xi[0]),
                    np.sinh(grid.eta), np.cosh(grid.eta), np.cos(grid.xi), np.sin(grid.xi),
                    grid.xi, Plan.of(len(grid.xi)))
 
@@ -38,29 +39,27 @@ class Exterior(NamedTuple):
 
 
 @kernel
-def series(modes, exterior, b):
-    """Return real and imaginary part (n, rows) of sum_k modes_k exp(-k zeta)."""
-    count, rows = exterior.decay.shape
-    size = 2 * count * rows
-    re, im = b.re[:size].reshape((2 * count, rows)), b.im[:size].reshape((2 * count, rows))
+def series(modes, decay, exterior, b):
+    """Return real and imaginary part (n, rows) of sum_k modes_k decay_kj exp(-i k xi) in ``b``.
+
+    With W = exp(-2 pi i / n), even lines are the transform of c_k, odd lines that of W^k c_k, each
+    of n / 2 values: side by side they come out in order.
+    """
+    count, rows = decay.shape
+    size, plan = 2 * count * rows, exterior.plan
+    x, y = b.re[:size].reshape((count, 2, rows)), b.im[:size].reshape((count, 2, rows))
     for k in range(count):
-        mode = modes[k] * exterior.start[k]
+        even = modes[k] * exterior.start[k]
+        odd = even * complex(plan.cos[k], plan.sin[k])
         for j in range(rows):
-            re[k, j] = mode.real * exterior.decay[k, j]
-            im[k, j] = mode.imag * exterior.decay[k, j]
-    re[count:] = 0.0
-    im[count:] = 0.0
-    return transform(b, 2 * count, rows, exterior.plan.full)
+            x[k, 0, j], y[k, 0, j] = even.real * decay[k, j], even.imag * decay[k, j]
+            x[k, 1, j], y[k, 1, j] = odd.real * decay[k, j], odd.imag * decay[k, j]
+    x, y = transform(b, count, 2 * rows, plan.half)
+    return x.reshape((2 * count, rows)), y.reshape((2 * count, rows))
 
 
 @kernel
 def wall_series(modes, exterior, b):
     """Return real and imaginary part (n,) of sum_k modes_k exp(-i k xi) in ``b``."""
-    count = modes.size
-    for k in range(count):
-        mode = modes[k] * exterior.start[k]
-        b.re[k], b.im[k] = mode.real, mode.imag
-    b.re[count:2 * count] = 0.0
-    b.im[count:2 * count] = 0.0
-    re, im = transform(b, 2 * count, 1, exterior.plan.full)
-    return re[:, 0], im[:, 0]
+    x, y = series(modes, exterior.on_wall, exterior, b)
+    return x[:, 0], y[:, 0]

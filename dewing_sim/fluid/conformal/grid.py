@@ -44,7 +44,7 @@ class Strip(NamedTuple):
     per_width: np.ndarray           # (rows,) its inverse
     per_gap: np.ndarray             # (rows,) inverse of the distance to the next row
     sinh_face: np.ndarray           # (rows,)
-    lines: np.ndarray               # (n,) 0, 1, ...: see `adi.sweep_xi`
+    lines: np.ndarray               # (n,) 0, 1, ...: see `kernels`
 
 
 @dataclass(frozen=True)

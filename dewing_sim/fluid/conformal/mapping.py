@@ -15,10 +15,10 @@ import numpy as np
 
 from dewing_sim.errors import NotConverged
 from dewing_sim.fluid.conformal.exterior import Exterior, wall_series
-from dewing_sim.fluid.conformal.stockham import Buffers, transform
+from dewing_sim.fluid.conformal.stockham import Buffers, line_modes
 from dewing_sim.fluid.kernels import kernel
 
-TOLERANCE = 1.0e-10         # chords, of the last change; the next would be far smaller
+TOLERANCE = 1.0e-8          # chords, of the last change; the next would be a hundredth of it
 PASSES = 300
 
 
@@ -148,13 +148,10 @@ def iterate(height, shape, edges, exterior, b):
 @kernel
 def _conjugate(y, exterior, b, shape):
     """Write 2 i / n sum_j y_j exp(i k xi_j): the series with the imaginary part ``y`` (n,)."""
-    n = y.size
-    b.re[:n] = y
-    b.im[:n] = 0.0
-    re, im = transform(b, n, 1, exterior.plan.full)
+    modes = line_modes(y, b, exterior.plan)
     for k in range(shape.size):
-        mode = exterior.start[k] * complex(re[k, 0], im[k, 0])
-        shape[k] = complex(mode.imag, mode.real) * (2.0 / n)
+        mode = exterior.start[k] * modes[k]
+        shape[k] = complex(mode.imag, mode.real) * (2.0 / y.size)
 
 
 @kernel

@@ -31,14 +31,14 @@ def metric_and_flux(exterior: Exterior, m: Map, shape_rate: np.ndarray, scale_ra
 def measure(shape, scale, shape_rate, scale_rate, exterior, b, h2, grid_v, grid_u):
     """Write h^2, G_V and G_U (n, rows) of the map ``shape``, ``scale`` with these rates."""
     n, rows = h2.shape
-    slope_x, slope_y = series(shape * np.arange(shape.size), exterior, b)
+    slope_x, slope_y = series(shape * np.arange(shape.size), exterior.decay, exterior, b)
     for i in range(n):
         cos, sin = 2.0 * scale * exterior.cos[i], 2.0 * scale * exterior.sin[i]
         for j in range(rows):
             x = cos * exterior.sinh[j] - slope_x[i, j]
             y = sin * exterior.cosh[j] - slope_y[i, j]
             h2[i, j], grid_v[i, j], grid_u[i, j] = x * x + y * y, x, y
-    rate_x, rate_y = series(shape_rate, exterior, b)
+    rate_x, rate_y = series(shape_rate, exterior.decay, exterior, b)
     for i in range(n):
         cos, sin = 2.0 * scale_rate * exterior.cos[i], 2.0 * scale_rate * exterior.sin[i]
         for j in range(rows):

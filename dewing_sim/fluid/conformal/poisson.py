@@ -35,11 +35,13 @@ class Poisson(NamedTuple):
     beyond: np.ndarray              # (2 modes,) from the last row to the boundary
     last_gap: float                 # between them
     integral: np.ndarray            # (modes,) 1 / (i k), 0 for mode 0 and the sawtooth
+    inwards: np.ndarray             # rows from the last but one to 1, see `kernels`
+    outwards: np.ndarray            # rows from 1 to the last
 
     @classmethod
     def of(cls, grid: Grid) -> 'Poisson':
         """Factor the systems of ``grid``."""
-        k = grid.wavenumbers
+        k, rows = grid.wavenumbers, len(grid.eta)
         beyond = np.exp(-k * grid.gap[-1])
         pivot, ratio = _factor(grid, k, beyond)
         decay = np.cumprod(np.concatenate((np.ones((1, len(k))), ratio[1:])), axis=0)
@@ -53,7 +55,7 @@ class Poisson(NamedTuple):
         pivot, ratio, decay, slope, beyond = (np.concatenate((real, real), axis=-1)
                                               for real in (pivot, ratio, decay, slope, beyond))
         return cls(grid.width, 1.0 / grid.gap, pivot, ratio, decay, slope, corner, wall, shift,
-                   beyond, grid.gap[-1], integral)
+                   beyond, grid.gap[-1], integral, np.arange(rows - 2, 0, -1), np.arange(1, rows))
 
 
 def _factor(grid: Grid, k: np.ndarray, beyond: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -111,15 +113,19 @@ def solve(p, q_hat, psi_wall, outer, psi):
     for k in range(twice):
         psi[last, k] = p.width[last] * q_hat[last, k] * p.pivot[last, k]
     psi[last, 0] += outer * p.pivot[last, 0]
-    for j in range(last - 1, 0, -1):
+    above = last
+    for j in p.inwards:
         width, conductance = p.width[j], p.conductance[j]
         for k in range(twice):
-            psi[j, k] = (width * q_hat[j, k] + conductance * psi[j + 1, k]) * p.pivot[j, k]
+            psi[j, k] = (width * q_hat[j, k] + conductance * psi[above, k]) * p.pivot[j, k]
+        above = j
     for k in range(modes):
         psi[0, k], psi[0, modes + k] = psi_wall[k].real, psi_wall[k].imag
-    for j in range(1, rows):
+    below = 0
+    for j in p.outwards:
         for k in range(twice):
-            psi[j, k] += p.ratio[j, k] * psi[j - 1, k]
+            psi[j, k] += p.ratio[j, k] * psi[below, k]
+        below = j
 
 
 @kernel

@@ -54,15 +54,28 @@ def wall_head(p, w, v, u, v_wall, u_wall, acceleration, b, plan):
 
     ``v`` and ``u`` (n, rows) are the fluxes through the cell faces.
     """
-    n, rows = w.shape
     _lamb_vector(w, v, u, v_wall, u_wall, b)
-    re, im = transform(b, n, rows, plan.full)
-    head = np.empty(p.inverse.size, dtype=np.complex128)
-    for k in range(head.size):
-        head[k] = -complex(_dot(p.weight[k], re[k]), _dot(p.weight[k], im[k]))
+    head = _weighted_modes(p.weight, w.shape[0], b, plan)
     head += p.inverse * line_modes(acceleration, b, plan)
-    head += p.viscous * line_modes(w[:, 0], b, plan)
+    head += p.viscous * line_modes(w[:, 0].copy(), b, plan)
     return line_values(head, b, plan)
+
+
+@kernel
+def _weighted_modes(weight, n, b, plan):
+    """Return -sum_j weight_kj X_kj of the modes X_k of the field in ``b``, complex (n / 2 + 1,).
+
+    X_k = E_k + W^k O_k, with the transforms E of even and O of odd lines side by side.
+    """
+    last, rows = n // 2, weight.shape[1]
+    re, im = transform(b, last, 2 * rows, plan.half)
+    total = np.empty(last + 1, dtype=np.complex128)
+    for k in range(last + 1):
+        x, y, factors = re[k % last], im[k % last], weight[k]
+        even = complex(_dot(factors, x[:rows]), _dot(factors, y[:rows]))
+        odd = complex(_dot(factors, x[rows:]), _dot(factors, y[rows:]))
+        total[k] = -even - complex(plan.cos[k], plan.sin[k]) * odd
+    return total
 
 
 @kernel

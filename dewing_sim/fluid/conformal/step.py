@@ -17,7 +17,7 @@ from dewing_sim.fluid.conformal.metric import measure
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.pressure import WallPressure
 from dewing_sim.fluid.conformal.stockham import Buffers
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, scratch
 
 
 class Fields(NamedTuple):
@@ -37,8 +37,7 @@ class Fields(NamedTuple):
     @classmethod
     def of(cls, n: int, rows: int) -> 'Fields':
         """Return fields for ``n`` lines."""
-        return cls(*np.empty((7, n, rows)), *np.empty((2, rows, n + 2)),
-                   Buffers.of(n * rows))
+        return cls(*scratch(7, n, rows), *scratch(2, rows, n + 2), Buffers.of(n * rows))
 
 
 class Solver(NamedTuple):

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.errors import BadInput
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, scratch
 
 RADICES = (5, 3, 2, 4)
 SIN_3 = np.sin(np.pi / 3.0)
@@ -55,18 +55,17 @@ def _factors(n: int) -> list[int]:
 
 
 class Plan(NamedTuple):
-    """What transforms of n real or complex values need."""
+    """What transforms of n values need; all are made of transforms of n / 2."""
 
-    full: Turns
     half: Turns                     # of n / 2 values
-    cos: np.ndarray                 # (n / 2 + 1,) of 2 pi k / n
-    sin: np.ndarray                 # (n / 2 + 1,) of -2 pi k / n
+    cos: np.ndarray                 # (n / 2 + 1,) real part of W^k = exp(-2 pi i k / n)
+    sin: np.ndarray                 # (n / 2 + 1,) its imaginary part
 
     @classmethod
     def of(cls, n: int) -> 'Plan':
         """Return the plan for an even ``n``."""
         angles = -2.0 * np.pi / n * np.arange(n // 2 + 1)
-        return cls(Turns.of(n), Turns.of(n // 2), np.cos(angles), np.sin(angles))
+        return cls(Turns.of(n // 2), np.cos(angles), np.sin(angles))
 
 
 class Buffers(NamedTuple):
@@ -80,7 +79,7 @@ class Buffers(NamedTuple):
     @classmethod
     def of(cls, size: int) -> 'Buffers':
         """Return buffers for ``size`` values."""
-        return cls(*np.zeros((4, size)))
+        return cls(*scratch(4, size))
 
 
 @kernel
@@ -236,26 +235,22 @@ def to_field(modes, b, plan, out):
 
 @kernel
 def line_modes(values, b, plan):
-    """Return sum_i values_i exp(-2 pi i k i / n), complex (n / 2 + 1,), of one real line (n,)."""
-    n = values.size
-    b.re[:n] = values
-    b.im[:n] = 0.0
-    re, im = transform(b, n, 1, plan.full)
-    modes = np.empty(n // 2 + 1, dtype=np.complex128)
-    for k in range(modes.size):
-        modes[k] = complex(re[k, 0], im[k, 0])
+    """Return the modes, complex (n / 2 + 1,), of one real line (n,)."""
+    count = values.size // 2 + 1
+    out = np.empty((1, 2 * count))
+    to_modes(values.reshape((-1, 1)), 1, b, plan, out)
+    modes = np.empty(count, dtype=np.complex128)
+    for k in range(count):
+        modes[k] = complex(out[0, k], out[0, count + k])
     return modes
 
 
 @kernel
 def line_values(modes, b, plan):
     """Return the real line (n,) of which these are the modes (n / 2 + 1,)."""
-    last = modes.size - 1
-    n = 2 * last
-    re, im = b.re[:n], b.im[:n]
-    re[0], im[0], re[last], im[last] = modes[0].real, 0.0, modes[last].real, 0.0
-    for k in range(1, last):
-        re[k], im[k] = modes[k].real, -modes[k].imag
-        re[n - k], im[n - k] = modes[k].real, modes[k].imag
-    re_out, _ = transform(b, n, 1, plan.full)
-    return re_out[:, 0] / n
+    count = modes.size
+    parts, out = np.empty((1, 2 * count)), np.empty((2 * count - 2, 1))
+    for k in range(count):
+        parts[0, k], parts[0, count + k] = modes[k].real, modes[k].imag
+    to_field(parts, b, plan, out)
+    return out[:, 0]

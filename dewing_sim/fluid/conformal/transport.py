@@ -88,9 +88,9 @@ def _across(w, v, grid, nu, flux):
     diffuses and nothing comes in.
     """
     last = w.size - 1
-    for j in range(1, last - 1):
-        flux[j] = (_flux(w[j - 1], w[j], w[j + 1], w[j + 2], v[j])
-                   + nu * grid.per_gap[j] * (w[j] - w[j + 1]))
+    for j in range(last - 2):
+        flux[j + 1] = (_flux(w[j], w[j + 1], w[j + 2], w[j + 3], v[j + 1])
+                       + nu * grid.per_gap[j + 1] * (w[j + 1] - w[j + 2]))
     for j in (0, last - 1):
         flux[j] = 0.5 * v[j] * (w[j] + w[j + 1]) + nu * grid.per_gap[j] * (w[j] - w[j + 1])
     flux[last] = max(v[last], 0.0) * w[last]
