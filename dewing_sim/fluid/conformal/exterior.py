@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.stockham import Plan, transform
+from dewing_sim.fluid.conformal.spectral import Plan
+from dewing_sim.fluid.conformal.stockham import transform
 from dewing_sim.fluid.kernels import kernel
 
 

@@ -17,7 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.stockham import line_modes, line_values, transform
+from dewing_sim.fluid.conformal.spectral import line_modes, line_values
+from dewing_sim.fluid.conformal.stockham import transform
 from dewing_sim.fluid.kernels import kernel, summing_kernel
 
 

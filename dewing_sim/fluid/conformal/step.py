@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.fluid.conformal import adi, noslip, poisson, pressure, stockham, transport
+from dewing_sim.fluid.conformal import adi, noslip, poisson, pressure, spectral, transport
 from dewing_sim.fluid.conformal.exterior import Exterior
 from dewing_sim.fluid.conformal.grid import Grid, Strip
 from dewing_sim.fluid.conformal.metric import measure
@@ -75,7 +75,7 @@ def advance(w_now, w_before, q_now, q_before, psi_now, psi_before, circulation, 
     w, outflow = _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, share,
                             scale, sin_corner, solver)
     circulation += solver.dt * outflow
-    required = stockham.line_modes(-u_wall - 2.0 * scale * sin_node, f.buffers, plan)
+    required = spectral.line_modes(-u_wall - 2.0 * scale * sin_node, f.buffers, plan)
     q, psi, slip = _close(w, v_wall, required, circulation, influence, solver)
     transport.fluxes(psi, sin_corner, scale, solver.grid, 0, len(psi), f.v, f.u)
     head = pressure.wall_head(solver.wall_pressure, w, f.v, f.u, v_wall, u_wall, acceleration,
@@ -127,11 +127,11 @@ def _close(w, v_wall, required, circulation, influence, solver):
         for j in range(rows):
             q[i, j] = f.h2[i, j] * w[i, j]
     outer = n * circulation / (2.0 * np.pi)
-    stockham.to_modes(q, rows, f.buffers, plan, f.q_hat)
-    psi_wall = stockham.line_modes(v_wall, f.buffers, plan) * solver.poisson.integral
+    spectral.to_modes(q, rows, f.buffers, plan, f.q_hat)
+    psi_wall = spectral.line_modes(v_wall, f.buffers, plan) * solver.poisson.integral
     largest = 0.0
     for exactly in (False, True):           # the second takes what the first leaves on no arc
-        slip = stockham.line_values(
+        slip = spectral.line_values(
             poisson.wall_slope(solver.poisson, f.q_hat, psi_wall, outer) - required, f.buffers,
             plan)
         fastest = np.abs(slip).max()
@@ -139,8 +139,8 @@ def _close(w, v_wall, required, circulation, influence, solver):
         if not noslip.NEGLIGIBLE_SLIP < fastest < noslip.LARGEST_SLIP:
             break
         reach = noslip.remove(influence, slip, f.h2, w, q, exactly)
-        stockham.to_modes(q, reach, f.buffers, plan, f.q_hat)
+        spectral.to_modes(q, reach, f.buffers, plan, f.q_hat)
     poisson.solve(solver.poisson, f.q_hat, psi_wall, outer, f.psi_hat)
     poisson.to_corners(solver.poisson, f.psi_hat, required, outer, f.q_hat)
-    stockham.to_field(f.q_hat, f.buffers, plan, psi)
+    spectral.to_field(f.q_hat, f.buffers, plan, psi)
     return q, psi, largest
