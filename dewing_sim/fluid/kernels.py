@@ -34,3 +34,6 @@ def scratch(count: int, *shape: int) -> list[np.ndarray]:
     stride = (size + PAGE - 1) // PAGE * PAGE + PAGE // count // 8 * 8
     block = np.zeros(count * stride)
     return [block[k * stride:k * stride + size].reshape(shape) for k in range(count)]
+
+
+stage = numba.njit(inline='always', error_model='numpy')

@@ -60,7 +60,7 @@ def _(fluid: FiniteVolume, flow: Any) -> tuple[np.ndarray, np.ndarray]:
 @suction_flow.register
 def _(fluid: Conformal, flow: Any) -> tuple[np.ndarray, np.ndarray]:
     upper = slice(len(fluid.grid.xi) // 2 - 1, None, -1)        # from the leading edge
-    place = fluid.geometry.mapping.wall(flow.map)[0]
+    place = fluid.geometry.mapping.wall(flow.map).place
     return place.real[upper], -flow.w[upper, 0]
 
 

@@ -15,7 +15,7 @@ a time, so that both fill SIMD lanes.
 import numpy as np
 
 from dewing_sim.fluid.conformal.transport import UPWIND
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, stage
 
 LANES = 16
 SPLITTING = 0.5
@@ -25,7 +25,7 @@ CONVECTION = 4.0 / 3.0
 DISSIPATION = UPWIND / 3.0          # bounds that of the explicit fluxes at every wave number
 
 
-@kernel
+@stage
 def split_inertia(h2, v, u, grid, nu, dt, first, stop, out):
     """Write (n, rows) sqrt(H^2 + SPLITTING^2 |A_eta| |A_xi|), 1 in row 0."""
     n, rows = h2.shape
@@ -41,7 +41,7 @@ def split_inertia(h2, v, u, grid, nu, dt, first, stop, out):
             out[i, j] = np.sqrt(h * h + 4.0 * SPLITTING**2 * a_eta * a_xi)
 
 
-@kernel
+@stage
 def sweep_eta(r, h, v, grid, nu, first, stop):
     """Solve (H + A_eta) t = r for rows 1 and outwards of a few lines, in place; r becomes H t.
 
@@ -76,7 +76,7 @@ def sweep_eta(r, h, v, grid, nu, first, stop):
             r[i, j] = t[j, k] * h[i, j]
 
 
-@kernel
+@stage
 def sweep_xi(r, h, u, grid, nu, high, corner):
     """Solve (H + A_xi) d = r on the periodic rows, in place; row 0 is to be without flux.
 

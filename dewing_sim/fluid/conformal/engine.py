@@ -20,7 +20,7 @@ from dewing_sim.fluid.conformal.frame import Frame
 from dewing_sim.fluid.conformal.geometry import Geometry
 from dewing_sim.fluid.conformal.grid import PRESETS, Grid
 from dewing_sim.fluid.conformal.mapping import Map
-from dewing_sim.fluid.conformal.pressure import added_mass, force
+from dewing_sim.fluid.conformal.pressure import force
 from dewing_sim.fluid.onset import Onset
 
 PINNED = 1.0e-9         # chords
@@ -125,28 +125,24 @@ class Conformal:
         if not change.any():
             return after
         acceleration = around.wall_motion(velocity, 1.5 / self.dt * change).acceleration
-        pressure = after.pressure + self._added_mass(acceleration)
+        pressure = after.pressure + self.solver.wall_pressure.added_mass @ acceleration
         return replace(after, pressure=pressure, velocity=velocity)
 
     def loads(self, state: FlowState) -> Loads:
         """Integrate pressure and wall shear around the wing."""
         grid = self.grid
         around = self.geometry.at_rest(state.map)
-        traction = force(state.pressure, state.w[:, 0], around.slope, self.nu)
+        traction = force(state.pressure, state.w[:, 0], around.line.slope, self.nu)
         total = np.sum(traction) * grid.step * np.exp(-1j * state.incidence)
-        moment = np.sum(np.conj(around.place - 0.25) * traction).imag * grid.step
+        moment = np.sum(np.conj(around.line.place - 0.25) * traction).imag * grid.step
         return Loads(around.jump(state.pressure), cl=2.0 * float(total.imag),
                      cd=2.0 * float(total.real), cm=-2.0 * float(moment))
-
-    def _added_mass(self, acceleration: np.ndarray) -> np.ndarray:
-        """Return the wall pressure (n,) of a normal acceleration (n,)."""
-        return added_mass(self.solver.wall_pressure, acceleration, self.solver.fields.buffers,
-                          self.solver.exterior.plan)
 
     def _flat_resistance(self) -> np.ndarray:
         """Return 3 / (2 dt) times the added mass of the flat plate between its columns."""
         flat = self.geometry.at_rest(self.geometry.mapping.flat())
-        jumps = [flat.jump(self._added_mass(flat.wall_motion(column, column).acceleration))
+        added_mass = self.solver.wall_pressure.added_mass
+        jumps = [flat.jump(added_mass @ flat.wall_motion(column, column).acceleration)
                  for column in np.eye(len(self.columns) - 1)]
         return -1.5 / self.dt * np.array(jumps).T
 

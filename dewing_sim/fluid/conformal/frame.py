@@ -64,12 +64,12 @@ class Frame:
         onset, turn = self.onset, self.turn
         if onset.stream_rate == 0.0 and not onset.is_turning:
             return within
-        arm = around.place - onset.pivot
-        flux = 1j * turn * arm * np.conj(around.slope)
+        arm = around.line.place - onset.pivot
+        flux = 1j * turn * arm * np.conj(around.line.slope)
         product = arm.imag * within.speed
         coriolis = fft.irfft(1j * self.grid.wavenumbers * fft.rfft(product), len(product))
         relative = -1j * onset.pitch_acceleration * arm - onset.stream_rate
         return WallMotion(within.u + flux.imag, within.v + flux.real,
-                          within.acceleration + (relative * np.conj(around.slope)).real
+                          within.acceleration + (relative * np.conj(around.line.slope)).real
                           - turn * coriolis,
                           np.abs(within.speed + turn * arm))

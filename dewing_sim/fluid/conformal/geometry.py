@@ -8,8 +8,7 @@ import numpy as np
 
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.conformal.exterior import Exterior
-from dewing_sim.fluid.conformal.mapping import Map, Mapping, iterate, require_settled, wall
-from dewing_sim.fluid.conformal.stockham import Buffers
+from dewing_sim.fluid.conformal.mapping import Line, Map, Mapping
 from dewing_sim.fluid.kernels import kernel
 
 
@@ -28,18 +27,16 @@ class Surroundings(NamedTuple):
     map: Map
     shape_rate: np.ndarray          # (modes,) of b_k
     scale_rate: float               # of a
-    place: np.ndarray               # (n,) z on the membrane
-    slope: np.ndarray               # (n,) z_zeta there
-    angles: np.ndarray              # (n,) theta of the nodes, x = (1 + cos theta) / 2
-    shift: np.ndarray               # (n,) theta - xi
+    line: Line
 
     def wall_motion(self, velocity: np.ndarray, acceleration: np.ndarray) -> WallMotion:
         """Return the motion along y with averages over the columns (columns,)."""
-        return WallMotion(*_wall_motion(velocity, acceleration, self.angles, self.slope))
+        return WallMotion(*_wall_motion(velocity, acceleration, self.line.angles,
+                                        self.line.slope))
 
     def jump(self, pressure: np.ndarray) -> np.ndarray:
         """Return pressure below less above (columns,) from the pressure on the nodes (n,)."""
-        return _nodes_to_columns(pressure, self.shift)
+        return _nodes_to_columns(pressure, self.line.shift)
 
 
 class Geometry:
@@ -48,34 +45,17 @@ class Geometry:
     def __init__(self, exterior: Exterior, dt: float):
         """Prepare for one grid."""
         self.mapping = Mapping(exterior)
-        self._dt, self._exterior = dt, exterior
-        self._buffers = Buffers.of(len(exterior.xi))
+        self._dt = dt
 
-    def follow(self, membrane: Wall, height: np.ndarray, now: Map, before: Map) -> Surroundings:
-        """Return the map that follows the membrane, moving from ``now``, of ``height``."""
-        moves = not (membrane.height is height or (membrane.height == height).all())
-        change, shape, edges, *others = _follow(
-            membrane.height, moves, *now, *before, self._dt, self._exterior, self._buffers)
-        require_settled(change)
-        return Surroundings(Map(shape, edges), *others)
+    def follow(self, wall: Wall, height: np.ndarray, now: Map, before: Map) -> Surroundings:
+        """Return the map that follows ``wall``, moving from ``now``, of ``height``."""
+        rests = wall.height is height or (wall.height == height).all()
+        return Surroundings(*self.mapping.move(None if rests else wall.height, now, before,
+                                               self._dt))
 
     def at_rest(self, m: Map) -> Surroundings:
         """Return a membrane at rest."""
-        return Surroundings(m, np.zeros_like(m.shape), 0.0, *self.mapping.wall(m))
-
-
-@kernel
-def _follow(height, moves, shape, edges, shape_before, edges_before, dt, exterior, b):
-    """Return the last change of the map, its shape, edges and rates, and the membrane."""
-    new_shape, new_edges, change = shape.copy(), edges.copy(), 0.0
-    if moves:
-        new_shape += shape - shape_before
-        new_edges += edges - edges_before
-        change = iterate(height, new_shape, new_edges, exterior, b)
-    shape_rate = (3.0 * new_shape - 4.0 * shape + shape_before) / (2.0 * dt)
-    scale_rate = (3.0 * new_edges[0] - 4.0 * edges[0] + edges_before[0]) / (2.0 * dt)
-    place, slope, angles, shift = wall(new_shape, new_edges, exterior, b)
-    return change, new_shape, new_edges, shape_rate, scale_rate, place, slope, angles, shift
+        return Surroundings(*self.mapping.move(None, m, m, self._dt))
 
 
 @kernel
@@ -92,7 +72,7 @@ def _wall_motion(velocity, acceleration, angles, slope):
     u, v, normal, speed = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     for i in range(n):
         position = columns - min(angles[i], 2.0 * np.pi - angles[i]) * columns / np.pi - 0.5
-        first = int(np.floor(position))
+        first = np.intp(np.floor(position))
         weights = _weights(position - first)
         rise, change = 0.0, 0.0
         for m in range(4):              # theta may leave [0, pi] by half a column
@@ -118,7 +98,7 @@ def _padded(values):
 @kernel
 def _at(padded, position):
     """Interpolate cubically at ``position``, counted in nodes, see `_padded`."""
-    first = int(np.floor(position))
+    first = np.intp(np.floor(position))
     a, b, c, d = _weights(position - first)
     at = first + padded.size // 6
     return a * padded[at - 1] + b * padded[at] + c * padded[at + 1] + d * padded[at + 2]

@@ -17,7 +17,7 @@ from dewing_sim.errors import NotConverged
 from dewing_sim.fluid.conformal.exterior import Exterior, wall_series
 from dewing_sim.fluid.conformal.spectral import line_modes
 from dewing_sim.fluid.conformal.stockham import Buffers
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, stage
 
 TOLERANCE = 1.0e-8          # chords, of the last change; the next would be a hundredth of it
 PASSES = 300
@@ -54,45 +54,81 @@ class Mapping:
 
         Raises `NotConverged` for a shape that this map cannot describe.
         """
-        m = Map(near.shape.copy(), near.edges.copy())
-        require_settled(iterate(height, m.shape, m.edges, self._exterior, self._buffers))
-        return m
+        return self.move(height, near, near, 1.0)[0]
 
-    def wall(self, m: Map) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return z, z_zeta, theta and theta - xi (n,) on the membrane.
+    def wall(self, m: Map) -> 'Line':
+        """Return the line of the membrane."""
+        return self.move(None, m, m, 1.0)[3]
 
-        The angle theta of a node, x = (1 + cos theta) / 2, is below pi on the upper side.
+    def move(self, height: np.ndarray | None, now: Map, before: Map, dt: float,
+             ) -> tuple[Map, np.ndarray, float, 'Line']:
+        """Return the map one step after ``now``, the rates of b_k and a, and the membrane.
+
+        It is that of a membrane with ``height``, or without one still that of ``now``.
         """
-        return wall(m.shape, m.edges, self._exterior, self._buffers)
+        none = height is None
+        change, shape, edges, shape_rate, scale_rate, *line = _move(
+            now.shape.real if none else height, not none, *now, *before, dt, self._exterior,
+            self._buffers)
+        if not change <= TOLERANCE:
+            raise NotConverged(f'conformal map: the shape still changes by {change:.3g} chords '
+                               f'after {PASSES} passes; the membrane is too strongly cambered '
+                               'for this engine')
+        return Map(shape, edges), shape_rate, scale_rate, Line(*line)
 
 
-def require_settled(change: float) -> None:
-    """Raise `NotConverged` if the last change of the map is too large (or no number)."""
-    if not change <= TOLERANCE:
-        raise NotConverged(f'conformal map: the shape still changes by {change:.3g} chords '
-                           f'after {PASSES} passes; the membrane is too strongly cambered '
-                           'for this engine')
+class Line(NamedTuple):
+    """The membrane at the nodes, each (n,)."""
+
+    place: np.ndarray               # z
+    slope: np.ndarray               # z_zeta
+    angles: np.ndarray              # theta, x = (1 + cos theta) / 2, below pi on the upper side
+    shift: np.ndarray               # theta - xi
 
 
 @kernel
-def wall(shape, edges, exterior, b):
+def _move(height, moves, shape, edges, shape_before, edges_before, dt, exterior, b):
+    """Return the last change of the map, its shape, edges and rates, and the membrane."""
+    new_shape, new_edges = np.empty(shape.size, dtype=np.complex128), np.empty(edges.size)
+    change = 0.0
+    ahead = 1.0 if moves else 0.0
+    for k in range(shape.size):
+        new_shape[k] = shape[k] + ahead * (shape[k] - shape_before[k])
+    for k in range(edges.size):
+        new_edges[k] = edges[k] + ahead * (edges[k] - edges_before[k])
+    if moves:
+        change = _iterate(height, new_shape, new_edges, exterior, b)
+    shape_rate = np.empty(shape.size, dtype=np.complex128)
+    for k in range(shape.size):
+        shape_rate[k] = (3.0 * new_shape[k] - 4.0 * shape[k] + shape_before[k]) / (2.0 * dt)
+    scale_rate = (3.0 * new_edges[0] - 4.0 * edges[0] + edges_before[0]) / (2.0 * dt)
+    place, slope, angles, shift = _line(new_shape, new_edges, exterior, b)
+    return change, new_shape, new_edges, shape_rate, scale_rate, place, slope, angles, shift
+
+
+@stage
+def _line(shape, edges, exterior, b):
     """Return z, z_zeta, theta and theta - xi (n,) on the membrane."""
     n = exterior.xi.size
     place, slope = np.empty(n, dtype=np.complex128), np.empty(n, dtype=np.complex128)
-    theta = np.empty(n)
+    theta, shift = np.empty(n), np.empty(n)
     x, y = wall_series(shape, exterior, b)
     for i in range(n):
+        xi = exterior.xi[i]
         place[i] = complex(x[i] + 2.0 * edges[0] * exterior.cos[i], y[i])
         angle = np.arccos(min(1.0, max(-1.0, 2.0 * place[i].real - 1.0)))
-        upper = edges[1] < exterior.xi[i] < edges[2]
-        theta[i] = angle if upper else 2.0 * np.pi - angle
-    x, y = wall_series(shape * np.arange(shape.size), exterior, b)
+        theta[i] = angle if edges[1] < xi < edges[2] else 2.0 * np.pi - angle
+        shift[i] = theta[i] - xi
+    modes = np.empty(shape.size, dtype=np.complex128)
+    for k in range(shape.size):
+        modes[k] = k * shape[k]
+    x, y = wall_series(modes, exterior, b)
     for i in range(n):
         slope[i] = complex(-x[i], 2.0 * edges[0] * exterior.sin[i] - y[i])
-    return place, slope, theta, theta - exterior.xi
+    return place, slope, theta, shift
 
 
-@kernel
+@stage
 def _edge(shape, scale, xi):
     """Return the conjugate function, x_xi and x_xixi at one xi, by recurrence."""
     x, first, second = 0.0, -2.0 * scale * np.sin(xi), -2.0 * scale * np.cos(xi)
@@ -108,7 +144,7 @@ def _edge(shape, scale, xi):
     return x, first, second
 
 
-@kernel
+@stage
 def _pin(shape, edges):
     """Move the edges to where x is extreme, then stretch and shift so that they are 1 and 0."""
     ends = np.empty(2)
@@ -122,15 +158,17 @@ def _pin(shape, edges):
     return -2.0 * edges[0] * np.cos(edges[2]) - ends[1]
 
 
-@kernel
-def iterate(height, shape, edges, exterior, b):
+@stage
+def _iterate(height, shape, edges, exterior, b):
     """Repeat y <- Y(x), x <- conjugate of y until y settles; return its last change."""
     n = exterior.xi.size
-    y, change = wall_series(shape, exterior, b)[1].copy(), np.inf
-    for _ in range(PASSES):
-        x, _ = wall_series(shape, exterior, b)
+    y, change = np.empty(n), np.inf
+    for trial in range(PASSES):
+        x, y_series = wall_series(shape, exterior, b)
         change = 0.0
         for i in range(n):
+            if trial == 0:
+                y[i] = y_series[i]
             place = x[i] + 2.0 * edges[0] * exterior.cos[i]
             new = interpolate_even(height, np.arccos(min(1.0, max(-1.0, 1.0 - 2.0 * place))))
             change = max(change, abs(new - y[i]))
@@ -143,10 +181,10 @@ def iterate(height, shape, edges, exterior, b):
         shape[0] = complex(x0, shape[0].imag)
         if not change > TOLERANCE:
             break
-    return change if np.isfinite(edges.sum()) else np.nan
+    return change if np.isfinite(edges[0] + edges[1] + edges[2]) else np.nan
 
 
-@kernel
+@stage
 def _conjugate(y, exterior, b, shape):
     """Write 2 i / n sum_j y_j exp(i k xi_j): the series with the imaginary part ``y`` (n,)."""
     modes = line_modes(y, b, exterior.plan)
@@ -155,12 +193,12 @@ def _conjugate(y, exterior, b, shape):
         shape[k] = complex(mode.imag, mode.real) * (2.0 / y.size)
 
 
-@kernel
+@stage
 def interpolate_even(values, angle):
     """Interpolate cubically an even function given at equidistant angles from 0 to pi."""
     last = values.size - 1
     position = angle * last / np.pi
-    first = min(int(position), last - 1)
+    first = min(np.intp(position), last - 1)
     s = position - first
     below = values[abs(first - 1)]
     above = values[first + 2] if first + 2 <= last else values[2 * last - first - 2]

@@ -10,7 +10,7 @@ import numpy as np
 from dewing_sim.fluid.conformal.exterior import Exterior, series
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.stockham import Buffers
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, stage
 
 
 def metric(exterior: Exterior, m: Map) -> np.ndarray:
@@ -27,7 +27,7 @@ def metric_and_flux(exterior: Exterior, m: Map, shape_rate: np.ndarray, scale_ra
     return tuple(fields)
 
 
-@kernel
+@stage
 def measure(shape, scale, shape_rate, scale_rate, exterior, b, h2, grid_v, grid_u):
     """Write h^2, G_V and G_U (n, rows) of the map ``shape``, ``scale`` with these rates."""
     n, rows = h2.shape

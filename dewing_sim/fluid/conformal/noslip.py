@@ -23,7 +23,7 @@ from scipy.linalg import eigh
 
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.poisson import Poisson
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, stage
 
 BLOCK = 4                   # modes added at once; divides the number of nodes
 NEGLIGIBLE_SLIP = 1.0e-6
@@ -95,7 +95,7 @@ def _responses(grid: Grid, values: np.ndarray, potential: np.ndarray, nu: float)
     return np.cumprod(np.concatenate((np.ones((1, len(values))), ratio[1:rows])), axis=0)
 
 
-@kernel
+@stage
 def remove(influence, slip, h2, w, h2_w, exactly):
     """Add to ``w`` and ``h2_w`` = h^2 w what removes ``slip`` (n,); return the rows reached.
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, stage
 
 
 class Poisson(NamedTuple):
@@ -89,7 +89,7 @@ def _interpolation(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     return corner, np.linalg.solve(at.T, grid.face[0]**powers)
 
 
-@kernel
+@stage
 def wall_slope(p, q_hat, psi_wall, outer):
     """Return d psi' / d eta (modes,) at the membrane without solving for psi."""
     rows, twice = p.decay.shape
@@ -105,7 +105,7 @@ def wall_slope(p, q_hat, psi_wall, outer):
     return slope
 
 
-@kernel
+@stage
 def solve(p, q_hat, psi_wall, outer, psi):
     """Write the modes of psi' on the rows."""
     rows, twice = p.pivot.shape
@@ -128,7 +128,7 @@ def solve(p, q_hat, psi_wall, outer, psi):
         below = j
 
 
-@kernel
+@stage
 def to_corners(p, psi, slope_wall, outer, out):
     """Write the modes of psi' at the cell corners, (face j, half a step beyond node i)."""
     rows, twice = psi.shape

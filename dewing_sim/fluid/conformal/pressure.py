@@ -15,11 +15,12 @@ the two sides differs up to the very edge, a step in xi that would ring.
 from typing import NamedTuple
 
 import numpy as np
+from scipy import fft
 
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.spectral import line_modes, line_values
 from dewing_sim.fluid.conformal.stockham import transform
-from dewing_sim.fluid.kernels import kernel, summing_kernel
+from dewing_sim.fluid.kernels import kernel, stage, summing_kernel
 
 
 class WallPressure(NamedTuple):
@@ -28,6 +29,7 @@ class WallPressure(NamedTuple):
     weight: np.ndarray              # (modes, rows)
     inverse: np.ndarray             # (modes,) 1 / k, 0 for mode 0
     viscous: np.ndarray             # (modes,) i nu
+    added_mass: np.ndarray          # (n, n) P of a normal acceleration A
 
     @classmethod
     def of(cls, grid: Grid, nu: float) -> 'WallPressure':
@@ -40,16 +42,11 @@ class WallPressure(NamedTuple):
         viscous = np.full(len(k), 1j * nu)
         viscous[0] = 0.0
         smooth = 1.0 - np.sin(0.5 * k * grid.step)**4
-        return cls(weight * smooth[:, None], inverse, viscous * smooth)
+        added_mass = fft.irfft(inverse[:, None] * fft.rfft(np.eye(len(grid.xi)), axis=0), axis=0)
+        return cls(weight * smooth[:, None], inverse, viscous * smooth, added_mass)
 
 
-@kernel
-def added_mass(p, flux, b, plan):
-    """Return the change of P (n,) by a normal acceleration A (n,)."""
-    return line_values(p.inverse * line_modes(flux, b, plan), b, plan)
-
-
-@kernel
+@stage
 def wall_head(p, w, v, u, v_wall, u_wall, acceleration, b, plan):
     """Return P (n,) on the membrane less its mean, for its normal ``acceleration`` A (n,).
 
@@ -57,12 +54,15 @@ def wall_head(p, w, v, u, v_wall, u_wall, acceleration, b, plan):
     """
     _lamb_vector(w, v, u, v_wall, u_wall, b)
     head = _weighted_modes(p.weight, w.shape[0], b, plan)
+    vorticity = np.empty(w.shape[0])
+    for i in range(w.shape[0]):
+        vorticity[i] = w[i, 0]
     head += p.inverse * line_modes(acceleration, b, plan)
-    head += p.viscous * line_modes(w[:, 0].copy(), b, plan)
+    head += p.viscous * line_modes(vorticity, b, plan)
     return line_values(head, b, plan)
 
 
-@kernel
+@stage
 def _weighted_modes(weight, n, b, plan):
     """Return -sum_j weight_kj X_kj of the modes X_k of the field in ``b``, complex (n / 2 + 1,).
 
@@ -79,7 +79,7 @@ def _weighted_modes(weight, n, b, plan):
     return total
 
 
-@kernel
+@stage
 def _lamb_vector(w, v, u, v_wall, u_wall, b):
     """Write w (U - i V) (n, rows) on the nodes from the fluxes through the cell faces."""
     n, rows = w.shape

@@ -17,7 +17,7 @@ from dewing_sim.fluid.conformal.metric import measure
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.pressure import WallPressure
 from dewing_sim.fluid.conformal.stockham import Buffers
-from dewing_sim.fluid.kernels import kernel, scratch
+from dewing_sim.fluid.kernels import kernel, scratch, stage
 
 
 class Fields(NamedTuple):
@@ -83,7 +83,7 @@ def advance(w_now, w_before, q_now, q_before, psi_now, psi_before, circulation, 
     return w, q, psi, head, circulation, slip
 
 
-@kernel
+@stage
 def _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, share, scale,
                sin_corner, solver):
     """Return the vorticity (n, rows) before no slip, and what left through the outer boundary."""
@@ -114,7 +114,7 @@ def _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, s
     return w, outflow
 
 
-@kernel
+@stage
 def _close(w, v_wall, required, circulation, influence, solver):
     """Shed into ``w`` what no slip demands; return h^2 w, psi' at the corners and the slip.
 
@@ -134,7 +134,7 @@ def _close(w, v_wall, required, circulation, influence, solver):
         slip = spectral.line_values(
             poisson.wall_slope(solver.poisson, f.q_hat, psi_wall, outer) - required, f.buffers,
             plan)
-        fastest = np.abs(slip).max()
+        fastest = _largest(slip)
         largest = max(largest, fastest) if fastest == fastest else fastest
         if not noslip.NEGLIGIBLE_SLIP < fastest < noslip.LARGEST_SLIP:
             break
@@ -144,3 +144,12 @@ def _close(w, v_wall, required, circulation, influence, solver):
     poisson.to_corners(solver.poisson, f.psi_hat, required, outer, f.q_hat)
     spectral.to_field(f.q_hat, f.buffers, plan, psi)
     return q, psi, largest
+
+
+@stage
+def _largest(values):
+    """Return the largest magnitude; what is no number stays one."""
+    largest = 0.0
+    for value in values:
+        largest = abs(value) if not abs(value) <= largest else largest
+    return largest

@@ -13,7 +13,7 @@ are at hand.
 import numpy as np
 
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.fluid.kernels import kernel, stage
 
 FIRST_ORDER = 0.65      # radius about an edge, per dt, of first-order extrapolation
 UPWIND = 0.5            # share of the dissipation of third-order upwind fluxes
@@ -31,7 +31,7 @@ def extrapolation_share(grid: Grid, trailing: float, leading: float, dt: float) 
     return np.clip(np.minimum(*distances) / (FIRST_ORDER * dt) - 1.0, 0.0, 1.0)
 
 
-@kernel
+@stage
 def extrapolate(now, before, share, out):
     """Write now + share (now - before)."""
     for i in range(now.shape[0]):
@@ -39,7 +39,7 @@ def extrapolate(now, before, share, out):
             out[i, j] = now[i, j] + share[i, j] * (now[i, j] - before[i, j])
 
 
-@kernel
+@stage
 def fluxes(psi, sin_corner, scale, grid, first, stop, v, u):
     """Write V through the outer face of each row and U after each node, both (n, rows).
 
@@ -60,7 +60,7 @@ def fluxes(psi, sin_corner, scale, grid, first, stop, v, u):
                        + corner * (sinh_face[j - 1] - sinh_face[j])) * grid.per_width[j]
 
 
-@kernel
+@stage
 def subtract_grid_flux(grid_v, grid_u, first, stop, v, u):
     """Subtract G_V and G_U (n, rows), given on the nodes, from the fluxes in place."""
     n, rows = v.shape
@@ -73,14 +73,14 @@ def subtract_grid_flux(grid_v, grid_u, first, stop, v, u):
             u[i, j] -= (9.0 * (grid_u[i, j] + grid_u[b, j]) - grid_u[a, j] - grid_u[c, j]) / 16.0
 
 
-@kernel
+@stage
 def _flux(a, b, c, d, velocity):
     """Return the flux from b to c by 4th-order central and 3rd-order upwind differences."""
     return (velocity * (SEVEN * (b + c) - ONE * (a + d))
             + ONE * UPWIND * abs(velocity) * (3.0 * (b - c) - a + d))
 
 
-@kernel
+@stage
 def _across(w, v, grid, nu, flux):
     """Write the flux along eta, diffusion included, through the outer face of each cell (rows,).
 
@@ -96,7 +96,7 @@ def _across(w, v, grid, nu, flux):
     flux[last] = max(v[last], 0.0) * w[last]
 
 
-@kernel
+@stage
 def _along(w, i, u, spread, flux):
     """Write the flux along xi, diffusion included, from line ``i`` to the next (rows,)."""
     n, rows = w.shape
@@ -106,7 +106,7 @@ def _along(w, i, u, spread, flux):
                    + spread * (w[i, j] - w[after, j]))
 
 
-@kernel
+@stage
 def residual(w, h2, q, q_before, v, u, grid, nu, dt, first, stop, out):
     """Write the imbalance of the vorticity equation (n, rows), 0 in row 0, for the guess ``w``.
 
