@@ -5,7 +5,7 @@
 What keeps a loop in SIMD lanes, found with the remarks of the compiler:
 
 * The inner loop runs along the last axis of each array, 64 values or more.
-* Before a loop the compiler compares the places of all arrays, up to some ten of them, or gives up.
+* Before a loop the compiler compares the places of all arrays; beyond some ten it gives up.
 * A loop that carries values from line to line would fail that test, which is made once for all
   lines: take the lines from an array of indices, and it is made for each line.
 * Arrays are not exchanged by name in a loop; take two rows of one array in turn.
@@ -20,6 +20,8 @@ PAGE = 512                  # doubles in 4 KB
 
 # Without error_model='numpy' every division carries a branch and no loop becomes SIMD.
 kernel = numba.njit(cache=True, error_model='numpy')
+# A part of one kernel. Compiled by itself, it would be compiled once more within its caller.
+stage = numba.njit(inline='always', error_model='numpy')
 # Sums become SIMD only where they may be added up in another order.
 summing_kernel = numba.njit(cache=True, error_model='numpy', fastmath={'reassoc', 'nsz'})
 
@@ -34,6 +36,3 @@ def scratch(count: int, *shape: int) -> list[np.ndarray]:
     stride = (size + PAGE - 1) // PAGE * PAGE + PAGE // count // 8 * 8
     block = np.zeros(count * stride)
     return [block[k * stride:k * stride + size].reshape(shape) for k in range(count)]
-
-
-stage = numba.njit(inline='always', error_model='numpy')

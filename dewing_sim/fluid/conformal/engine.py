@@ -20,7 +20,7 @@ from dewing_sim.fluid.conformal.frame import Frame
 from dewing_sim.fluid.conformal.geometry import Geometry
 from dewing_sim.fluid.conformal.grid import PRESETS, Grid
 from dewing_sim.fluid.conformal.mapping import Map
-from dewing_sim.fluid.conformal.pressure import force
+from dewing_sim.fluid.conformal.pressure import added_mass, force
 from dewing_sim.fluid.onset import Onset
 
 PINNED = 1.0e-9         # chords
@@ -125,7 +125,7 @@ class Conformal:
         if not change.any():
             return after
         acceleration = around.wall_motion(velocity, 1.5 / self.dt * change).acceleration
-        pressure = after.pressure + self.solver.wall_pressure.added_mass @ acceleration
+        pressure = after.pressure + added_mass(self.solver.wall_pressure, acceleration)
         return replace(after, pressure=pressure, velocity=velocity)
 
     def loads(self, state: FlowState) -> Loads:
@@ -141,9 +141,10 @@ class Conformal:
     def _flat_resistance(self) -> np.ndarray:
         """Return 3 / (2 dt) times the added mass of the flat plate between its columns."""
         flat = self.geometry.at_rest(self.geometry.mapping.flat())
-        added_mass = self.solver.wall_pressure.added_mass
-        jumps = [flat.jump(added_mass @ flat.wall_motion(column, column).acceleration)
-                 for column in np.eye(len(self.columns) - 1)]
+        still = np.zeros(len(self.columns) - 1)
+        jumps = [flat.jump(added_mass(self.solver.wall_pressure,
+                                      flat.wall_motion(still, column).acceleration))
+                 for column in np.eye(len(still))]
         return -1.5 / self.dt * np.array(jumps).T
 
 

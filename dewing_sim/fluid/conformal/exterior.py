@@ -29,9 +29,9 @@ class Exterior(NamedTuple):
     def of(cls, grid: Grid) -> 'Exterior':
         """Return the tables of ``grid``."""
         k = grid.wavenumbers[:-1]
-        return cls(np.exp(-np.outer(k, grid.eta)), np.ones((len(k), 1)), np.exp(-1j * k * grid.xi[0]),
-                   np.sinh(grid.eta), np.cosh(grid.eta), np.cos(grid.xi), np.sin(grid.xi),
-                   grid.xi, Plan.of(len(grid.xi)))
+        return cls(np.exp(-np.outer(k, grid.eta)), np.ones((len(k), 1)),
+                   np.exp(-1j * k * grid.xi[0]), np.sinh(grid.eta), np.cosh(grid.eta),
+                   np.cos(grid.xi), np.sin(grid.xi), grid.xi, Plan.of(len(grid.xi)))
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -29,7 +29,7 @@ class WallPressure(NamedTuple):
     weight: np.ndarray              # (modes, rows)
     inverse: np.ndarray             # (modes,) 1 / k, 0 for mode 0
     viscous: np.ndarray             # (modes,) i nu
-    added_mass: np.ndarray          # (n, n) P of a normal acceleration A
+    added_mass: np.ndarray          # (n, n) P of a normal acceleration A, symmetric
 
     @classmethod
     def of(cls, grid: Grid, nu: float) -> 'WallPressure':
@@ -42,8 +42,19 @@ class WallPressure(NamedTuple):
         viscous = np.full(len(k), 1j * nu)
         viscous[0] = 0.0
         smooth = 1.0 - np.sin(0.5 * k * grid.step)**4
-        added_mass = fft.irfft(inverse[:, None] * fft.rfft(np.eye(len(grid.xi)), axis=0), axis=0)
-        return cls(weight * smooth[:, None], inverse, viscous * smooth, added_mass)
+        unit = fft.rfft(np.eye(len(grid.xi)), axis=0)
+        return cls(weight * smooth[:, None], inverse, viscous * smooth,
+                   fft.irfft(inverse[:, None] * unit, axis=0))
+
+
+@kernel
+def added_mass(p, acceleration):
+    """Return the change of P (n,) by a normal acceleration A (n,)."""
+    out = np.zeros(acceleration.size)
+    for k in range(out.size):
+        for i in range(out.size):
+            out[i] += p.added_mass[k, i] * acceleration[k]
+    return out
 
 
 @stage

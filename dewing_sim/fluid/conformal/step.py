@@ -97,7 +97,8 @@ def _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, s
     if turning.size:
         psi -= turning
     outflow = 0.0
-    transport.fluxes(psi, sin_corner, scale, grid, n - 1, n, f.v, f.u)      # the first needs the last
+    # The first line needs the fluxes of the last; then a few lines pass through all that follows.
+    transport.fluxes(psi, sin_corner, scale, grid, n - 1, n, f.v, f.u)
     transport.subtract_grid_flux(f.grid_v, f.grid_u, n - 1, n, f.v, f.u)
     for first in range(0, n, adi.LANES):
         stop = min(first + adi.LANES, n)

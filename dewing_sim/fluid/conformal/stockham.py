@@ -27,7 +27,8 @@ RADICES = (3, 2, 4)         # in the order of the stages: the last has the short
 SIN_3 = np.sin(np.pi / 3.0)
 SYMBOL = 'dewing_stockham'
 REALS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
-SIGNATURE = types.int64(*[REALS] * 4, types.int64, types.int64, INTEGERS, types.int64, REALS, REALS)
+SIGNATURE = types.int64(REALS, REALS, REALS, REALS, types.int64, types.int64, INTEGERS,
+                        types.int64, REALS, REALS)
 butterfly = numba.njit(error_model='numpy')
 _stockham = types.ExternalFunction(SYMBOL, SIGNATURE)
 
@@ -109,8 +110,9 @@ def _stages(re, im, next_re, next_im, n, lanes, radices, stages, cos, sin):
         there, back = (m, r, w), (r, m, w)
         x, y = numba.carray(re, there), numba.carray(im, there)
         next_x, next_y = numba.carray(next_re, back), numba.carray(next_im, back)
-        c, s = numba.carray(cos, done + m * (r - 1))[done:], numba.carray(sin, done + m * (r - 1))[
-            done:]
+        factors = m * (r - 1)
+        c = numba.carray(cos, done + factors)[done:]
+        s = numba.carray(sin, done + factors)[done:]
         if r == 4:
             _join_4(x, y, next_x, next_y, c, s)
         elif r == 3:
@@ -118,7 +120,7 @@ def _stages(re, im, next_re, next_im, n, lanes, radices, stages, cos, sin):
         else:
             _join_2(x, y, next_x, next_y, c, s)
         re, im, next_re, next_im = next_re, next_im, re, im
-        done += m * (r - 1)
+        done += factors
         m *= r
     return stages
 

@@ -6,14 +6,13 @@
 
 V = psi_xi, U = -psi_eta, and G_V + i G_U = z_t conj(z_zeta) is the exact flux of the grid.  Fluxes
 are differences of psi at the cell corners: free of divergence to round-off.  Functions work on the
-lines from ``first`` to before ``stop``, so that a few lines can pass through all of them while they
-are at hand.
+lines from ``first`` to before ``stop``: a few lines pass through all of them while they are at hand.
 """
 
 import numpy as np
 
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.kernels import kernel, stage
+from dewing_sim.fluid.kernels import stage
 
 FIRST_ORDER = 0.65      # radius about an edge, per dt, of first-order extrapolation
 UPWIND = 0.5            # share of the dissipation of third-order upwind fluxes
