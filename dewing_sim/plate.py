@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from dewing_sim import compilation
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Fluid, Loads, Wall
 from dewing_sim.fluid.choice import Demand, choose
@@ -32,6 +33,7 @@ class Plate:
     def __init__(self, alpha: float, camber: float = 0.0, reynolds: float = 2500.0,
                  grid: str = 'standard', dt: float = 0.004, engine: str = 'finite_volume'):
         """Prepare the flow solver on a grid preset."""
+        compilation.prepare()
         self.dt = dt
         self.engine = choose(engine, Demand(grid, camber, reynolds, alpha, dt))
         self.fluid: Fluid = engines.make(self.engine, grid, reynolds, alpha, dt)

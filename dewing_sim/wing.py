@@ -52,7 +52,7 @@ class Wing:
 
     def __init__(self, case: Case):
         """Prepare the solvers of ``case``."""
-        compilation.without_garbage_collection()
+        compilation.prepare()
         self.dt = case.numerics.time_step
         self.scales = Scales.of(case.flow, case.membrane.chord)
         self.membrane = elements.make(case.membrane, self.scales)

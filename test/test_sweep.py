@@ -219,7 +219,7 @@ def wait_for_the_first_point(process):
 
 @pytest.mark.slow
 def test_a_sweep_of_processes_is_interrupted_and_goes_on_elsewhere(cluster):
-    command = ['--vary', 'numerics.trim_time=0.1,20.0', '--out', 'sweep.nc']
+    command = ['--vary', 'numerics.trim_time=0.1,80.0', '--out', 'sweep.nc']
     process = start(*command, '--jobs', '2')
     wait_for_the_first_point(process)
     os.killpg(process.pid, signal.SIGINT)           # as Ctrl-C on a terminal does
@@ -238,7 +238,7 @@ def test_a_sweep_of_processes_is_interrupted_and_goes_on_elsewhere(cluster):
 
 @pytest.mark.slow
 def test_a_worker_that_is_killed_does_not_stop_the_sweep():
-    process = start('--vary', 'numerics.trim_time=0.1,12.0', '--jobs', '2', '--out', 'sweep.nc')
+    process = start('--vary', 'numerics.trim_time=0.1,50.0', '--jobs', '2', '--out', 'sweep.nc')
     wait_for_the_first_point(process)
     workers = [child for child in psutil.Process(process.pid).children()
                if 'spawn_main' in ' '.join(child.cmdline())]

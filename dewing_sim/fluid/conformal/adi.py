@@ -17,7 +17,7 @@ import numpy as np
 from dewing_sim.fluid.conformal.transport import UPWIND
 from dewing_sim.fluid.kernels import stage
 
-LANES = 16
+LANES = 24
 SPLITTING = 0.5
 # The explicit fluxes are of fourth order, with a symbol up to 5/3 times the implicit one; with
 # this factor the mismatch is within 1/4 and extrapolation in time stays stable at any CFL number.
@@ -45,8 +45,8 @@ def split_inertia(h2, v, u, grid, nu, dt, first, stop, out):
 def sweep_eta(r, h, v, grid, nu, first, stop):
     """Solve (H + A_eta) t = r for rows 1 and outwards of a few lines, in place; r becomes H t.
 
-    ``h`` (n, rows) is H, ``v`` (n, rows) the flux through the outer face of each row.  At most LANES
-    lines are turned, so that the sweep runs across them.
+    ``h`` (n, rows) is H, ``v`` (n, rows) the flux through the outer face of each row.  At most
+    LANES lines are turned, so that the sweep runs across them.
     """
     rows, lanes = r.shape[1], stop - first
     t, flux = np.empty((rows, LANES)), np.empty((rows, LANES))

@@ -6,7 +6,7 @@
 
 V = psi_xi, U = -psi_eta, and G_V + i G_U = z_t conj(z_zeta) is the exact flux of the grid.  Fluxes
 are differences of psi at the cell corners: free of divergence to round-off.  Functions work on the
-lines from ``first`` to before ``stop``: a few lines pass through all of them while they are at hand.
+lines from ``first`` to before ``stop``: a few lines pass through all of them while at hand.
 """
 
 import numpy as np
