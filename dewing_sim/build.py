@@ -8,6 +8,7 @@ from typing import Any
 
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
+from dewing_sim.fluid.base import Monitor
 from dewing_sim.identity import Identity
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Plant
@@ -16,13 +17,19 @@ from dewing_sim.settings import SimulatorSettings
 
 @dataclass(frozen=True)
 class Built:
-    """A plant, its rest state, what it is, and how its states go to a file and back."""
+    """A plant, its rest state, what it is, and how its states go to a file and back.
+
+    ``monitor`` and ``caution`` are those of the flow of a state, zero and empty where none is
+    solved.
+    """
 
     plant: Plant
     rest: Any
     identity: Identity
     save: Callable[[str, Any], None]
     load: Callable[[str], Any]
+    monitor: Callable[[Any], Monitor]
+    caution: Callable[[Any], str]
 
 
 def build(settings: SimulatorSettings, case: Case, progress=None) -> Built:
@@ -53,7 +60,8 @@ def build_wing(case: Case, progress=None) -> Built:
         return checkpoint.load(path)
 
     return Built(wing, rest, identity,
-                 lambda path, state: checkpoint.save(path, state, wing.case), load)
+                 lambda path, state: checkpoint.save(path, state, wing.case), load,
+                 wing.monitor, wing.caution)
 
 
 def build_reduced(model: str) -> Built:
@@ -63,4 +71,5 @@ def build_reduced(model: str) -> Built:
     text = str(plant.extra.get('case_yaml', ''))
     case = parameters.to_mapping(parameters.from_yaml(text)) if text else {}
     identity = Identity.of('reduced', plant, rest, plant.v_squared_max, case)
-    return Built(plant, rest, identity, plant.save, plant.load)
+    return Built(plant, rest, identity, plant.save, plant.load,
+                 lambda _: Monitor(0.0, 0.0, 0.0), lambda _: '')

@@ -235,9 +235,11 @@ class SimulatorNode(Node):
         return f'state saved in {self.rescue}'
 
     def _report(self):
-        if self.status.level == messages.OK and self._command.get_publisher_count() > 1:
-            self.status.set(messages.WARN, f'{self._command.get_publisher_count()} controllers: '
-                                           'the first answer to a measurement counts')
+        controllers = self._command.get_publisher_count()
+        caution = (f'{controllers} controllers: the first answer to a measurement counts'
+                   if controllers > 1 else self.built.caution(self.lockstep.state))
+        if self.status.level == messages.OK and caution:
+            self.status.set(messages.WARN, caution)
         else:
             self.status.report()
 
@@ -251,7 +253,8 @@ class SimulatorNode(Node):
             unanswered=step.unanswered, missed_deadlines=self._deadlines.missed,
             rtf=step.steps * self.plant.dt / wall if wall else 0.0,
             ms_per_step=1.0e3 * step.plant_seconds / made,
-            overhead_ms_per_step=1.0e3 * max(wall - step.plant_seconds, 0.0) / made)
+            overhead_ms_per_step=1.0e3 * max(wall - step.plant_seconds, 0.0) / made,
+            **vars(self.built.monitor(step.state)))
 
     # --- what the services do ------------------------------------------------------------------
 

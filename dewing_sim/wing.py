@@ -19,6 +19,7 @@ from dewing_sim.disturbance import wall_pressure
 from dewing_sim.encounter import Encounter
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
+from dewing_sim.fluid.base import HIGH_SLIP, Monitor
 from dewing_sim.fluid.onset import Onset
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
@@ -137,6 +138,18 @@ class Wing:
             coupling_iterations=state.iterations,
             x=chord * x, y=chord * y,
             pressure_jump=self.scales.pressure * np.interp(x, self._centres, loads.jump))
+
+    def monitor(self, state: State) -> Monitor:
+        """Return how near the flow of ``state`` is to the largest time step it bears."""
+        return self.fluid.monitor(state.flow)
+
+    def caution(self, state: State) -> str:
+        """Return a warning once the flow, a convective time after its start, slips too much."""
+        slip = self.fluid.slip(state.flow)
+        if state.step * self.dt <= self.scales.time or slip <= HIGH_SLIP:
+            return ''
+        return (f'the flow slips along the membrane at {slip:.3g} free-stream speeds, half of '
+                f'what stops a run is {HIGH_SLIP:g}: lower the time step')
 
     @property
     def reference_deflection(self) -> float:

@@ -49,6 +49,7 @@ def test_a_saved_state_continues_bit_for_bit(paper, tmp_path):
         state = fresh.step(state, 90000.0)
     for name, value in vars(states[-1].flow).items():
         assert np.array_equal(value, getattr(state.flow, name)), name
+    assert state.flow.slip > 0.0
     direct, restarted = plant.observe(states[-1]), fresh.observe(state)
     assert all(getattr(direct, name) == getattr(restarted, name) for name in SCALARS)
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes in one executor: the loop in ten lines, faults injected, services, live parameters."""
 
+import dataclasses
 import math
 import os
 import signal
@@ -114,6 +115,17 @@ def test_unusable_commands_are_counted_reported_and_not_obeyed(scripted, v_squar
     script.send(1.0e5)
     session.spin_until(lambda: simulator.lockstep.steps == 1, PATIENCE)
     assert simulator.lockstep.v_squared == 1.0e5 and simulator.reason == 'running'
+
+
+def test_a_caution_about_the_state_is_a_warning_until_a_step_is_made(scripted):
+    session, simulator, script = scripted
+    simulator.built = dataclasses.replace(
+        simulator.built, caution=lambda state: f'beware of step {state.step}')
+    session.spin_until(lambda: simulator.reason == 'beware of step 0', PATIENCE)
+    assert simulator.status.level == messages.WARN
+    script.send(1.0e5)
+    session.spin_until(lambda: simulator.lockstep.steps == 1, PATIENCE)
+    assert simulator.status.level == messages.OK and simulator.reason == 'running'
 
 
 def test_stale_and_foreign_commands_are_dropped(scripted):

@@ -40,21 +40,25 @@ def run(arguments: argparse.Namespace) -> None:
     """Simulate, then write and print the metrics, also of an interrupted run."""
     case, settings, steps = _check(arguments)
 
+    from dewing_control.run_metrics import Watch
     from dewing_sim.history import Recorder
     with bar('preparing', 's', arguments.quiet) as show:
         loop = _prepare(case, arguments, settings, steps, show)
     recorder, laps, state = Recorder(loop.plant.case, arguments.every), Laps(), None
+    watch = Watch(loop.plant.fluid, steps)
     try:
         with bar('simulating', 's', arguments.quiet) as show:
             for instant in until_interrupted(loop.steps):
                 state, outputs = instant
                 recorder.add(outputs)
+                watch.add(state.flow)
                 laps.add()
                 show(len(recorder), steps, outputs.time)
     finally:
         if len(recorder):
             _keep(arguments.save_state, state, loop.plant.case)
-            _deliver(arguments, case, loop, recorder.history(), laps)
+            metrics = _metrics(arguments, case, loop, recorder.history(), laps)
+            _deliver(arguments, case, metrics | watch.metrics(), recorder.history())
 
 
 def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
@@ -127,8 +131,7 @@ def _keep(path: str | None, state: Any, case: Case) -> None:
         checkpoint.save(path, state, case)
 
 
-def _deliver(arguments: argparse.Namespace, case: Case, loop: Loop, history, laps: Laps) -> None:
-    metrics = _metrics(arguments, case, loop, history, laps)
+def _deliver(arguments: argparse.Namespace, case: Case, metrics: dict, history) -> None:
     if arguments.out:
         history.save(arguments.out, arguments.force)
     if arguments.controller:

@@ -14,6 +14,9 @@ import numpy as np
 
 from dewing_sim.fluid.onset import Onset
 
+EDGE = 0.01                 # chords around an edge where CFL numbers count apart
+HIGH_SLIP = 0.75            # U: half of what stops a run of the conformal engine
+
 
 @dataclass(frozen=True)
 class Wall:
@@ -56,6 +59,30 @@ class Loads:
     cm: float
 
 
+@dataclass(frozen=True)
+class Monitor:
+    """How near a flow is to the largest time step it bears.
+
+    CFL numbers tell how many cells the air crosses in a step: ``courant`` is the largest further
+    than `EDGE` from both edges, ``edge_courant`` the largest within.  At an edge the cells of the
+    conformal engine shrink with h while the air stays fast, so that ``edge_courant`` is large by
+    nature: some tens are sound there, as the sweeps are implicit.  ``slip`` is the largest that
+    the membrane shed in the last step, in free-stream speeds; it grows before a flow becomes
+    unstable.
+    """
+
+    courant: float
+    edge_courant: float
+    slip: float
+
+    @classmethod
+    def of(cls, courant: np.ndarray, distance: np.ndarray, slip: float) -> 'Monitor':
+        """Return the monitor of cells with these CFL numbers and distances to an edge (c)."""
+        near = distance < EDGE
+        return cls(float(courant[~near].max(initial=0.0)), float(courant[near].max(initial=0.0)),
+                   slip)
+
+
 class Fluid(Protocol):
     """An incompressible Navier-Stokes solver about a moving wing."""
 
@@ -80,3 +107,9 @@ class Fluid(Protocol):
 
     def loads(self, state: Any) -> Loads:
         """Return the loads of a state."""
+
+    def slip(self, state: Any) -> float:
+        """Return the largest slip shed in the last step, in free-stream speeds; at once."""
+
+    def monitor(self, state: Any) -> Monitor:
+        """Return CFL numbers and slip of a state, in the stream without gust, heave and pitch."""

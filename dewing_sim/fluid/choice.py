@@ -10,15 +10,13 @@ import math
 from dataclasses import dataclass
 
 from dewing_sim.errors import BadInput
+from dewing_sim.fluid.conformal.grid import LARGEST_STEP
 from dewing_sim.fluid.engines import GRIDS
 
 AUTO = 'auto'
 CAMBER = 0.15               # chords
 REYNOLDS = (100.0, 10000.0)
 ALPHA = 12.0                # deg
-# c/U: largest steps with which a plate sheds at `ALPHA` without slip that grows.
-TIME_STEP = {'realtime': 0.0205, 'fast': 0.0123, 'standard': 0.0082, 'fine': 0.0041,
-             'reference': 0.0041}
 
 
 @dataclass(frozen=True)
@@ -60,7 +58,7 @@ def obstacle(demand: Demand) -> str | None:
             ('camber', abs(demand.camber), 0.0, CAMBER),
             ('Reynolds number', demand.reynolds, *REYNOLDS),
             ('angle of attack in deg', degrees, 0.0, ALPHA),
-            ('time step in c/U', demand.dt, 0.0, TIME_STEP[demand.grid])):
+            ('time step in c/U', demand.dt, 0.0, LARGEST_STEP[demand.grid])):
         if not low <= value <= high:
             return f'a {name} of {value:.4g} is outside {low:g} to {high:g}'
     return None

@@ -8,17 +8,19 @@ function.  The wall pressure is an affine function of the wall acceleration with
 mass, so the membrane is solved together with it.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.fluid.base import Loads, Prediction, Wall
+from dewing_sim.fluid.base import Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.conformal import noslip, step
+from dewing_sim.fluid.conformal.courant import courant
 from dewing_sim.fluid.conformal.edges import EdgeTable
 from dewing_sim.fluid.conformal.frame import Frame
 from dewing_sim.fluid.conformal.geometry import Geometry
-from dewing_sim.fluid.conformal.grid import PRESETS, Grid
+from dewing_sim.fluid.conformal.grid import LARGEST_STEP, PRESETS, Grid
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.pressure import added_mass, force
 from dewing_sim.fluid.onset import Onset
@@ -46,6 +48,7 @@ class FlowState:
     velocity_before: np.ndarray
     circulation: float              # of the wing and the wake within the grid, in U c
     incidence: float                # of the chord to the undisturbed stream, rad
+    slip: float                     # largest that the last step shed, in U
 
     @property
     def map(self) -> Map:
@@ -61,9 +64,14 @@ class FlowState:
 class Conformal:
     """Incompressible Navier-Stokes flow on a conformal map, see `base.Fluid`."""
 
-    def __init__(self, grid: Grid, reynolds: float, alpha: float, dt: float):
-        """Prepare a grid for one Reynolds number, angle of attack (rad) and dt (c/U)."""
+    def __init__(self, grid: Grid, reynolds: float, alpha: float, dt: float,
+                 largest_dt: float = math.inf):
+        """Prepare a grid for one Reynolds number, angle of attack (rad) and dt (c/U).
+
+        A failure names ``largest_dt``, the largest step known to be sound, if ``dt`` exceeds it.
+        """
         self.grid = grid
+        self.largest_dt = largest_dt
         self.nu = 1.0 / reynolds
         self.alpha = alpha
         self.dt = dt
@@ -77,7 +85,7 @@ class Conformal:
     @classmethod
     def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'Conformal':
         """Return the engine on a named grid (`grid.PRESETS`)."""
-        return cls(Grid.build(PRESETS[name]), reynolds, alpha, dt)
+        return cls(Grid.build(PRESETS[name]), reynolds, alpha, dt, LARGEST_STEP[name])
 
     def rest(self, wall: Wall, circulation: float) -> FlowState:
         """Return the potential flow with the given bound circulation (U c), about to feel no slip.
@@ -90,7 +98,7 @@ class Conformal:
         psi = zero + circulation / (2.0 * np.pi) * self.grid.face
         return FlowState(zero, zero, psi, zero, zero, psi, m.shape, m.edges, m.shape, m.edges,
                          zero[:, 0].copy(), wall.height, wall.velocity, wall.velocity, circulation,
-                         self.alpha)
+                         self.alpha, 0.0)
 
     def with_circulation(self, state: FlowState, circulation: float) -> FlowState:
         """Return ``state`` with another circulation, by a starting vortex at infinity."""
@@ -110,12 +118,12 @@ class Conformal:
             state.circulation, frame.grid_stream(around.map), around.map.shape, around.map.scale,
             around.shape_rate, around.scale_rate, frame.corner, frame.node, motion.u, motion.v,
             motion.acceleration, edges.share, edges.influence, self.solver)
-        _require_hold(slip)
+        self._require_hold(slip, state)
         pressure = head - 0.5 * motion.speed**2
         after = FlowState(w, q, psi, state.w, state.q, state.psi,
                           around.map.shape, around.map.edges, state.shape, state.edges,
                           pressure, wall.height, wall.velocity, state.velocity, circulation,
-                          frame.onset.incidence)
+                          frame.onset.incidence, slip)
         return Prediction(wall, around.jump(pressure), (after, around))
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
@@ -138,6 +146,26 @@ class Conformal:
         return Loads(around.jump(state.pressure), cl=2.0 * float(total.imag),
                      cd=2.0 * float(total.real), cm=-2.0 * float(moment))
 
+    def slip(self, state: FlowState) -> float:
+        """Return the largest slip shed in the last step, in U: 0 at rest."""
+        return state.slip
+
+    def monitor(self, state: FlowState) -> Monitor:
+        """Return CFL numbers and slip of a state, in the stream without gust, heave and pitch."""
+        numbers, distance = courant(self.solver.exterior, self.grid, state.psi, state.incidence,
+                                    state.map, state.map_before, self.dt)
+        return Monitor.of(numbers, distance, state.slip)
+
+    def _require_hold(self, slip: float, before: FlowState) -> None:
+        """Raise `Diverged` if the flow slips faster than any sound run (or is no number)."""
+        if slip < noslip.LARGEST_SLIP:
+            return
+        limit = (f', now {self.dt:.3g} c/U where this grid bears {self.largest_dt:.3g},'
+                 if self.dt > self.largest_dt else '')
+        raise Diverged(f'the flow slips along the membrane at {slip:.3g} free-stream speeds, '
+                       f'at a CFL number of {self.monitor(before).edge_courant:.3g} next to the '
+                       f'edges: lower the time step{limit} or take a coarser grid')
+
     def _flat_resistance(self) -> np.ndarray:
         """Return 3 / (2 dt) times the added mass of the flat plate between its columns."""
         flat = self.geometry.at_rest(self.geometry.mapping.flat())
@@ -146,13 +174,6 @@ class Conformal:
                                       flat.wall_motion(still, column).acceleration))
                  for column in np.eye(len(still))]
         return -1.5 / self.dt * np.array(jumps).T
-
-
-def _require_hold(slip: float) -> None:
-    """Raise `Diverged` if the flow slips faster than any sound run (or is no number)."""
-    if not slip < noslip.LARGEST_SLIP:
-        raise Diverged(f'the flow slips along the membrane at {slip:.3g} free-stream speeds: '
-                       'lower the time step or take a coarser grid')
 
 
 def _require_pinned(wall: Wall) -> None:

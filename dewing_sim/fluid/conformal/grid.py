@@ -34,6 +34,9 @@ PRESETS = {
     'reference': Preset(192, 128, 0.005),
 }
 PRESETS['fine'] = PRESETS['reference']      # a name of both engines
+# c/U: largest steps with which a plate at 12 degrees sheds without slip that grows.
+LARGEST_STEP = {'realtime': 0.0205, 'fast': 0.0123, 'standard': 0.0082, 'fine': 0.0041,
+                'reference': 0.0041}
 
 
 class Strip(NamedTuple):

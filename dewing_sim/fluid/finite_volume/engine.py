@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.fluid.base import Loads, Prediction, Wall
+from dewing_sim.fluid.base import Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.finite_volume import adi, mapping, momentum, projection, transport
 from dewing_sim.fluid.finite_volume.grid import PRESETS, Grid, build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
@@ -161,6 +161,20 @@ class FiniteVolume:
         cos, sin = np.cos(self.alpha), np.sin(self.alpha)
         return Loads(jump, cl=2.0 * float(normal * cos - axial * sin),
                      cd=2.0 * float(normal * sin + axial * cos), cm=2.0 * float(moment))
+
+    def slip(self, state: FlowState) -> float:
+        """Return 0: the momentum equation has the wall velocity built in."""
+        return 0.0
+
+    def monitor(self, state: FlowState) -> Monitor:
+        """Return the CFL numbers of the cells, from the mean fluxes through their faces."""
+        grid = self.grid
+        m = mapping.metrics(grid, Wall(state.height, state.velocity))
+        rate = (0.5 * np.abs(state.fx[1:] + state.fx[:-1]) / grid.dx[:, None]
+                + 0.5 * np.abs(state.w[:, 1:] + state.w[:, :-1]) / grid.dy)
+        outside = np.minimum(np.abs(grid.xc), np.abs(grid.xc - 1.0))
+        return Monitor.of(self.dt * rate / (1.0 + np.outer(m.height_c, self._g.dc)),
+                          np.hypot(outside[:, None], grid.yc), self.slip(state))
 
     def momentum(self, state: FlowState, m: mapping.Metrics, wall: Wall,
                  ) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,54 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""CFL numbers on the moving map: how many cells the air crosses in a step.
+
+    dt (|V - G_V| / d_eta + |U - G_U| / d_xi) / h^2,
+
+with the fluxes of the air and of the grid as in `transport`.  Here they are evaluated on demand,
+at the nodes of a state, and the motion of the grid is its last step.
+"""
+
+import numpy as np
+
+from dewing_sim.fluid.conformal.exterior import Exterior
+from dewing_sim.fluid.conformal.grid import Grid
+from dewing_sim.fluid.conformal.mapping import Map
+
+
+def courant(exterior: Exterior, grid: Grid, psi: np.ndarray, incidence: float, now: Map,
+            before: Map, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return CFL number and distance (c) to the nearest edge of the nodes (n, rows - 1).
+
+    ``psi`` is psi' at the corners, ``incidence`` (rad) that of the undisturbed stream.  The nodes
+    on the membrane are left out: nothing is carried there.
+    """
+    place, slope, motion = _geometry(exterior, now, before, dt)
+    v, u = _fluxes(grid, psi, incidence, now.scale)
+    grid_flux = motion * np.conj(slope)
+    rate = (np.abs(v - grid_flux.real) / grid.width[1:] + np.abs(u - grid_flux.imag) / grid.step)
+    return (dt * rate / (slope.real**2 + slope.imag**2),
+            np.minimum(np.abs(place), np.abs(place - 1.0)))
+
+
+def _geometry(exterior: Exterior, now: Map, before: Map, dt: float,
+              ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return z = 2 a cosh(zeta) + sum_k b_k exp(-k zeta), z_zeta and z_t, each (n, rows - 1)."""
+    k = np.arange(len(now.shape))
+    around, decay = np.exp(-1j * np.outer(exterior.xi, k)), exterior.decay[:, 1:]
+    cos, sin = exterior.cos[:, None], exterior.sin[:, None]
+    cosh = exterior.cosh[1:] * cos + 1j * exterior.sinh[1:] * sin
+    sinh = exterior.sinh[1:] * cos + 1j * exterior.cosh[1:] * sin
+    place, slope, motion = (around @ (modes[:, None] * decay) for modes in (
+        now.shape, -k * now.shape, (now.shape - before.shape) / dt))
+    return (place + 2.0 * now.scale * cosh, slope + 2.0 * now.scale * sinh,
+            motion + 2.0 * (now.scale - before.scale) / dt * cosh)
+
+
+def _fluxes(grid: Grid, psi: np.ndarray, incidence: float, scale: float,
+            ) -> tuple[np.ndarray, np.ndarray]:
+    """Return V and U (n, rows - 1) of the air, each the mean of its two faces."""
+    corner = np.sin(grid.xi + 0.5 * grid.step - incidence)
+    stream = psi + 2.0 * scale * np.outer(corner, np.sinh(grid.face))
+    v = (stream - np.roll(stream, 1, axis=0)) / grid.step
+    u = -np.diff(stream, axis=1) / grid.width[1:]
+    return 0.5 * (v[:, 1:] + v[:, :-1]), 0.5 * (u + np.roll(u, 1, axis=0))
