@@ -28,7 +28,7 @@ class Preset:
 
 
 PRESETS = {
-    'realtime': Preset(72, 72, 0.008),
+    'realtime': Preset(64, 72, 0.008),
     'fast': Preset(96, 72, 0.008),
     'standard': Preset(128, 96, 0.006),
     'reference': Preset(192, 128, 0.005),
