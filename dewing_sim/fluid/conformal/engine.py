@@ -113,13 +113,12 @@ class Conformal:
         acceleration = (3.0 * wall.velocity - 4.0 * state.velocity + state.velocity_before
                         ) / (2.0 * self.dt)
         motion = frame.wall_motion(around, wall.velocity, acceleration)
-        w, q, psi, head, circulation, slip = step.advance(
+        w, q, psi, pressure, circulation, slip = step.advance(
             state.w, state.w_before, state.q, state.q_before, state.psi, state.psi_before,
             state.circulation, frame.grid_stream(around.map), around.map.shape, around.map.scale,
             around.shape_rate, around.scale_rate, frame.corner, frame.node, motion.u, motion.v,
-            motion.acceleration, edges.share, edges.influence, self.solver)
+            motion.acceleration, motion.speed, edges.share, edges.influence, self.solver)
         self._require_hold(slip, state)
-        pressure = head - 0.5 * motion.speed**2
         after = FlowState(w, q, psi, state.w, state.q, state.psi,
                           around.map.shape, around.map.edges, state.shape, state.edges,
                           pressure, wall.height, wall.velocity, state.velocity, circulation,

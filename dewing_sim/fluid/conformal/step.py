@@ -61,13 +61,12 @@ class Solver(NamedTuple):
 @kernel
 def advance(w_now, w_before, q_now, q_before, psi_now, psi_before, circulation, turning, shape,
             scale, shape_rate, scale_rate, sin_corner, sin_node, u_wall, v_wall, acceleration,
-            share, influence, solver):
+            speed, share, influence, solver):
     """Return vorticity, h^2 w, psi', wall pressure, circulation and slip after a step.
 
     ``turning`` (n, rows) is the stream function of turning axes at the corners, empty if they do
-    not turn; the membrane has the fluxes ``u_wall``, ``v_wall`` and the normal ``acceleration``
-    (n,) with the metric in it. The pressure is P = p + q^2 / 2 less its mean. The slip is the
-    largest that was shed.
+    not turn; the membrane has the fluxes ``u_wall``, ``v_wall``, the normal ``acceleration`` with
+    the metric in it and the ``speed``, each (n,). The slip is the largest that was shed.
     """
     f, plan = solver.fields, solver.exterior.plan
     measure(shape, scale, shape_rate, scale_rate, solver.exterior, f.buffers, f.h2, f.grid_v,
@@ -78,9 +77,11 @@ def advance(w_now, w_before, q_now, q_before, psi_now, psi_before, circulation, 
     required = spectral.line_modes(-u_wall - 2.0 * scale * sin_node, f.buffers, plan)
     q, psi, slip = _close(w, v_wall, required, circulation, influence, solver)
     transport.fluxes(psi, sin_corner, scale, solver.grid, 0, len(psi), f.v, f.u)
-    head = pressure.wall_head(solver.wall_pressure, w, f.v, f.u, v_wall, u_wall, acceleration,
-                              f.buffers, plan)
-    return w, q, psi, head, circulation, slip
+    p = pressure.wall_head(solver.wall_pressure, w, f.v, f.u, v_wall, u_wall, acceleration,
+                           f.buffers, plan)
+    for i in range(p.size):
+        p[i] -= 0.5 * speed[i]**2           # of the total head P
+    return w, q, psi, p, circulation, slip
 
 
 @stage
