@@ -10,6 +10,7 @@ mass, so the membrane is solved together with it.
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from dewing_sim.fluid.conformal import noslip, step
 from dewing_sim.fluid.conformal.courant import courant
 from dewing_sim.fluid.conformal.edges import EdgeTable
 from dewing_sim.fluid.conformal.frame import Frame
-from dewing_sim.fluid.conformal.geometry import Geometry
+from dewing_sim.fluid.conformal.geometry import Geometry, Surroundings
 from dewing_sim.fluid.conformal.grid import LARGEST_STEP, PRESETS, Grid
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.pressure import added_mass, force
@@ -61,6 +62,20 @@ class FlowState:
         return Map(self.shape_before, self.edges_before)
 
 
+class Predicted(NamedTuple):
+    """What `correct` needs of a step."""
+
+    before: FlowState
+    around: Surroundings
+    w: np.ndarray
+    q: np.ndarray
+    psi: np.ndarray
+    pressure: np.ndarray
+    circulation: float
+    incidence: float
+    slip: float
+
+
 class Conformal:
     """Incompressible Navier-Stokes flow on a conformal map, see `base.Fluid`."""
 
@@ -79,6 +94,7 @@ class Conformal:
         self.solver = step.Solver.of(grid, self.nu, dt)
         self.geometry = Geometry(self.solver.exterior, dt)
         self.edges = EdgeTable(grid, self.solver.poisson, self.nu, dt)
+        self._still = np.zeros(len(self.columns) - 1)
         self.resistance = self._flat_resistance()
         self._steady = Frame.of(Onset.steady(alpha), grid)
 
@@ -110,30 +126,29 @@ class Conformal:
         frame = Frame.of(onset, self.grid) if onset else self._steady
         around = self.geometry.follow(wall, state.height, state.map, state.map_before)
         edges = self.edges.near(around.map)
-        acceleration = (3.0 * wall.velocity - 4.0 * state.velocity + state.velocity_before
-                        ) / (2.0 * self.dt)
-        motion = frame.wall_motion(around, wall.velocity, acceleration)
+        motion = frame.wall_motion(around, wall.velocity, state.velocity, state.velocity_before,
+                                   self.dt)
         w, q, psi, pressure, circulation, slip = step.advance(
             state.w, state.w_before, state.q, state.q_before, state.psi, state.psi_before,
             state.circulation, frame.grid_stream(around.map), around.map.shape, around.map.scale,
             around.shape_rate, around.scale_rate, frame.corner, frame.node, motion.u, motion.v,
             motion.acceleration, motion.speed, edges.share, edges.influence, self.solver)
         self._require_hold(slip, state)
-        after = FlowState(w, q, psi, state.w, state.q, state.psi,
-                          around.map.shape, around.map.edges, state.shape, state.edges,
-                          pressure, wall.height, wall.velocity, state.velocity, circulation,
-                          frame.onset.incidence, slip)
-        return Prediction(wall, around.jump(pressure), (after, around))
+        fields = Predicted(state, around, w, q, psi, pressure, circulation,
+                           frame.onset.incidence, slip)
+        return Prediction(wall, around.jump(pressure), fields)
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
         """Complete the step: the wall velocity that the coupling found acts by the added mass."""
-        after, around = prediction.fields
-        change = velocity - prediction.wall.velocity
-        if not change.any():
-            return after
-        acceleration = around.wall_motion(velocity, 1.5 / self.dt * change).acceleration
-        pressure = after.pressure + added_mass(self.solver.wall_pressure, acceleration)
-        return replace(after, pressure=pressure, velocity=velocity)
+        p, wall = prediction.fields, prediction.wall
+        pressure, change = p.pressure, velocity - wall.velocity
+        if change.any():
+            motion = p.around.wall_motion(change, self._still, self._still, self.dt)
+            pressure = pressure + added_mass(self.solver.wall_pressure, motion.acceleration)
+        now = p.before
+        return FlowState(p.w, p.q, p.psi, now.w, now.q, now.psi, *p.around.map, now.shape,
+                         now.edges, pressure, wall.height, velocity, now.velocity,
+                         p.circulation, p.incidence, p.slip)
 
     def loads(self, state: FlowState) -> Loads:
         """Integrate pressure and wall shear around the wing."""
@@ -168,11 +183,11 @@ class Conformal:
     def _flat_resistance(self) -> np.ndarray:
         """Return 3 / (2 dt) times the added mass of the flat plate between its columns."""
         flat = self.geometry.at_rest(self.geometry.mapping.flat())
-        still = np.zeros(len(self.columns) - 1)
-        jumps = [flat.jump(added_mass(self.solver.wall_pressure,
-                                      flat.wall_motion(still, column).acceleration))
-                 for column in np.eye(len(still))]
-        return -1.5 / self.dt * np.array(jumps).T
+        jumps = []
+        for column in np.eye(len(self._still)):
+            motion = flat.wall_motion(column, self._still, self._still, self.dt)
+            jumps.append(flat.jump(added_mass(self.solver.wall_pressure, motion.acceleration)))
+        return -np.array(jumps).T
 
 
 def _require_pinned(wall: Wall) -> None:

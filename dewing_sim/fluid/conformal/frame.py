@@ -54,13 +54,13 @@ class Frame:
         arm = 2.0 * m.scale * np.cosh(eta + 1j * xi) + series - self.onset.pivot
         return -0.5 * self.turn * np.abs(arm)**2
 
-    def wall_motion(self, around: Surroundings, velocity: np.ndarray, acceleration: np.ndarray,
-                    ) -> WallMotion:
-        """Return the motion of the membrane of which the axes see the velocity and acceleration.
+    def wall_motion(self, around: Surroundings, velocity: np.ndarray, now: np.ndarray,
+                    before: np.ndarray, dt: float) -> WallMotion:
+        """Return the motion of the membrane that has these velocities (columns,) in the axes.
 
-        Both are averages over the columns (columns,).
+        ``now`` and ``before`` are those of the last two steps.
         """
-        within = around.wall_motion(velocity, acceleration)
+        within = around.wall_motion(velocity, now, before, dt)
         onset, turn = self.onset, self.turn
         if onset.stream_rate == 0.0 and not onset.is_turning:
             return within

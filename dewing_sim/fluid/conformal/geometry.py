@@ -29,9 +29,13 @@ class Surroundings(NamedTuple):
     scale_rate: float               # of a
     line: Line
 
-    def wall_motion(self, velocity: np.ndarray, acceleration: np.ndarray) -> WallMotion:
-        """Return the motion along y with averages over the columns (columns,)."""
-        return WallMotion(*_wall_motion(velocity, acceleration, self.line.angles,
+    def wall_motion(self, velocity: np.ndarray, now: np.ndarray, before: np.ndarray, dt: float,
+                    ) -> WallMotion:
+        """Return the motion along y with velocities, averages over the columns (columns,).
+
+        ``now`` and ``before`` are those of the last two steps, for a BDF2 acceleration.
+        """
+        return WallMotion(*_wall_motion(velocity, now, before, dt, self.line.angles,
                                         self.line.slope))
 
     def jump(self, pressure: np.ndarray) -> np.ndarray:
@@ -66,7 +70,7 @@ def _weights(s):
 
 
 @kernel
-def _wall_motion(velocity, acceleration, angles, slope):
+def _wall_motion(velocity, now, before, dt, angles, slope):
     """Interpolate cubically; columns lie at theta = pi - (c + 1/2) d theta, even in theta."""
     columns, n = velocity.size, angles.size
     u, v, normal, speed = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
@@ -79,9 +83,9 @@ def _wall_motion(velocity, acceleration, angles, slope):
             c = first - 1 + m
             c = -1 - c if c < 0 else min(c, 2 * columns - 1 - c)
             rise += weights[m] * velocity[c]
-            change += weights[m] * acceleration[c]
+            change += weights[m] * (3.0 * velocity[c] - 4.0 * now[c] + before[c])
         u[i], v[i], speed[i] = rise * slope[i].real, rise * slope[i].imag, rise
-        normal[i] = change * slope[i].imag
+        normal[i] = change / (2.0 * dt) * slope[i].imag
     return u, v, normal, speed
 
 
