@@ -38,7 +38,8 @@ class EdgeTable:
     def near(self, m: Map) -> Edges:
         """Return the entry nearest to the edges of ``m``."""
         spacing = SPACING * self._grid.step
-        place = (round(m.edges[1] / spacing), round((m.edges[2] - np.pi) / spacing))
+        _, trailing, leading = m.edges.tolist()
+        place = (round(trailing / spacing), round((leading - np.pi) / spacing))
         if place not in self._table:
             self._table[place] = self._make(place[0] * spacing, np.pi + place[1] * spacing)
         return self._table[place]

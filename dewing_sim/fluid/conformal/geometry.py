@@ -53,13 +53,12 @@ class Geometry:
 
     def follow(self, wall: Wall, height: np.ndarray, now: Map, before: Map) -> Surroundings:
         """Return the map that follows ``wall``, moving from ``now``, of ``height``."""
-        rests = wall.height is height or (wall.height == height).all()
-        return Surroundings(*self.mapping.move(None if rests else wall.height, now, before,
-                                               self._dt))
+        return Surroundings(*self.mapping.move(wall.height, height, now, before, self._dt))
 
     def at_rest(self, m: Map) -> Surroundings:
         """Return a membrane at rest."""
-        return Surroundings(*self.mapping.move(None, m, m, self._dt))
+        same = np.zeros(1)
+        return Surroundings(*self.mapping.move(same, same, m, m, self._dt))
 
 
 @kernel

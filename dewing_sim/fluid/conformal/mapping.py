@@ -54,22 +54,21 @@ class Mapping:
 
         Raises `NotConverged` for a shape that this map cannot describe.
         """
-        return self.move(height, near, near, 1.0)[0]
+        return self.move(height, np.full_like(height, np.nan), near, near, 1.0)[0]
 
     def wall(self, m: Map) -> 'Line':
         """Return the line of the membrane."""
-        return self.move(None, m, m, 1.0)[3]
+        same = np.zeros(1)
+        return self.move(same, same, m, m, 1.0)[3]
 
-    def move(self, height: np.ndarray | None, now: Map, before: Map, dt: float,
+    def move(self, height: np.ndarray, height_now: np.ndarray, now: Map, before: Map, dt: float,
              ) -> tuple[Map, np.ndarray, float, 'Line']:
         """Return the map one step after ``now``, the rates of b_k and a, and the membrane.
 
-        It is that of a membrane with ``height``, or without one still that of ``now``.
+        It is the map of ``height``; where this is that of ``now``, the map stays as it is.
         """
-        none = height is None
         change, shape, edges, shape_rate, scale_rate, *line = _move(
-            now.shape.real if none else height, not none, *now, *before, dt, self._exterior,
-            self._buffers)
+            height, height_now, *now, *before, dt, self._exterior, self._buffers)
         if not change <= TOLERANCE:
             raise NotConverged(f'conformal map: the shape still changes by {change:.3g} chords '
                                f'after {PASSES} passes; the membrane is too strongly cambered '
@@ -87,8 +86,11 @@ class Line(NamedTuple):
 
 
 @kernel
-def _move(height, moves, shape, edges, shape_before, edges_before, dt, exterior, b):
+def _move(height, height_now, shape, edges, shape_before, edges_before, dt, exterior, b):
     """Return the last change of the map, its shape, edges and rates, and the membrane."""
+    moves = False
+    for i in range(height.size):
+        moves = moves or height[i] != height_now[i]
     new_shape, new_edges = np.empty(shape.size, dtype=np.complex128), np.empty(edges.size)
     change = 0.0
     ahead = 1.0 if moves else 0.0
