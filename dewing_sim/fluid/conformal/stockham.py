@@ -90,14 +90,15 @@ def transform(b, n, lanes, turns):
 
 
 @cache
-def _compile() -> None:
-    """Compile the stages once, for all kernels to call by name.
+def _compile() -> object:
+    """Compile the stages once, for all kernels to call by name; return what keeps them in memory.
 
     Called as other kernels are, they would be compiled into each of their callers and into the
     callers of these, which takes half a minute.
     """
     compiled = numba.cfunc(SIGNATURE, cache=True, error_model='numpy')(_stages)
     llvmlite.binding.add_symbol(SYMBOL, compiled.address)
+    return compiled
 
 
 def _stages(re, im, next_re, next_im, n, lanes, radices, stages, cos, sin):
