@@ -38,6 +38,7 @@ setup(
         ('lib/dewing', [f'scripts/{name}' for name in EXECUTABLES]),
     ],
     install_requires=[
+        'llvmlite>=0.42',
         'matplotlib>=3.7',
         'mcap>=1.6',
         'numba>=0.59',
