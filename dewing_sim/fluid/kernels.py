@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the flow kernels are compiled, IEEE division without checks, cached on disk; and scratch.
 
-What keeps a loop in SIMD lanes, found with the remarks of the compiler: the inner loop runs along the
-last axis of each array, 64 values or more.  Before a loop the compiler compares the places of all
-arrays; beyond some ten it gives up.  A loop that carries values from line to line would fail that
-test, which is made once for all lines: take the lines from an array of indices, and it is made for
-each line.  Arrays are not exchanged by name in a loop; take two rows of one array in turn.
+What keeps a loop in SIMD lanes, found with the remarks of the compiler: the inner loop runs along
+the last axis of each array, 64 values or more.  Before a loop the compiler compares the places of
+all arrays; beyond some ten it gives up.  A loop that carries values from line to line would fail
+that test, which is made once for all lines: take the lines from an array of indices, and it is
+made for each line.  Arrays are not exchanged by name in a loop; two rows of one array take turns.
 """
 
 import math
