@@ -89,16 +89,8 @@ def _(fluid: Conformal, flow: Any) -> FlowField:
     nodes, corners = grid.xi, grid.xi + 0.5 * grid.step
     stream = flow.psi + 2.0 * m.scale * np.outer(
         np.sin(corners - fluid.alpha), np.sinh(grid.face))
-    return FlowField([_patch(_places(m, grid.eta, nodes), flow.w)],
-                     [_patch(_places(m, grid.face, corners), stream)])
-
-
-def _places(m: Any, eta: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return z = 2 a cosh(zeta) + sum b_k exp(-k zeta), complex (n, rows)."""
-    k = np.arange(len(m.shape))
-    around = np.exp(-1j * np.outer(xi, k))
-    series = around @ (m.shape[:, None] * np.exp(-np.outer(k, eta)))
-    return 2.0 * m.scale * np.cosh(eta + 1j * xi[:, None]) + series
+    return FlowField([_patch(m.places(grid.eta, nodes), flow.w)],
+                     [_patch(m.places(grid.face, corners), stream)])
 
 
 def _patch(place: np.ndarray, value: np.ndarray) -> Patch:

@@ -22,7 +22,7 @@ def courant(exterior: Exterior, grid: Grid, psi: np.ndarray, incidence: float, n
     ``psi`` is psi' at the corners, ``incidence`` (rad) that of the undisturbed stream.  The nodes
     on the membrane are left out: nothing is carried there.
     """
-    place, slope, motion = _geometry(exterior, now, before, dt)
+    place, (slope, motion) = now.places(grid.eta[1:], grid.xi), _rates(exterior, now, before, dt)
     v, u = _fluxes(grid, psi, incidence, now.scale)
     grid_flux = motion * np.conj(slope)
     rate = (np.abs(v - grid_flux.real) / grid.width[1:] + np.abs(u - grid_flux.imag) / grid.step)
@@ -30,17 +30,17 @@ def courant(exterior: Exterior, grid: Grid, psi: np.ndarray, incidence: float, n
             np.minimum(np.abs(place), np.abs(place - 1.0)))
 
 
-def _geometry(exterior: Exterior, now: Map, before: Map, dt: float,
-              ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return z = 2 a cosh(zeta) + sum_k b_k exp(-k zeta), z_zeta and z_t, each (n, rows - 1)."""
+def _rates(exterior: Exterior, now: Map, before: Map, dt: float,
+           ) -> tuple[np.ndarray, np.ndarray]:
+    """Return z_zeta and z_t of the map, each (n, rows - 1)."""
     k = np.arange(len(now.shape))
     around, decay = np.exp(-1j * np.outer(exterior.xi, k)), exterior.decay[:, 1:]
     cos, sin = exterior.cos[:, None], exterior.sin[:, None]
     cosh = exterior.cosh[1:] * cos + 1j * exterior.sinh[1:] * sin
     sinh = exterior.sinh[1:] * cos + 1j * exterior.cosh[1:] * sin
-    place, slope, motion = (around @ (modes[:, None] * decay) for modes in (
-        now.shape, -k * now.shape, (now.shape - before.shape) / dt))
-    return (place + 2.0 * now.scale * cosh, slope + 2.0 * now.scale * sinh,
+    slope, motion = (around @ (modes[:, None] * decay) for modes in (
+        -k * now.shape, (now.shape - before.shape) / dt))
+    return (slope + 2.0 * now.scale * sinh,
             motion + 2.0 * (now.scale - before.scale) / dt * cosh)
 
 

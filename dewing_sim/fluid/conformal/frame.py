@@ -48,10 +48,8 @@ class Frame:
         """Return the stream function (n, rows) of turning at the corners, empty without."""
         if not self.turn:
             return STILL
-        xi, eta = self.grid.xi[:, None] + 0.5 * self.grid.step, self.grid.face
-        k = self.grid.wavenumbers[:-1]
-        series = np.exp(-1j * np.outer(xi, k)) @ (m.shape[:, None] * np.exp(-np.outer(k, eta)))
-        arm = 2.0 * m.scale * np.cosh(eta + 1j * xi) + series - self.onset.pivot
+        corners = self.grid.xi + 0.5 * self.grid.step
+        arm = m.places(self.grid.face, corners) - self.onset.pivot
         return -0.5 * self.turn * np.abs(arm)**2
 
     def wall_motion(self, around: Surroundings, velocity: np.ndarray, now: np.ndarray,

@@ -57,8 +57,7 @@ class Geometry:
 
     def at_rest(self, m: Map) -> Surroundings:
         """Return a membrane at rest."""
-        same = np.zeros(1)
-        return Surroundings(*self.mapping.move(same, same, m, m, self._dt))
+        return Surroundings(m, np.zeros_like(m.shape), 0.0, self.mapping.wall(m))
 
 
 @kernel

@@ -34,6 +34,13 @@ class Map(NamedTuple):
         """The radius a."""
         return float(self.edges[0])
 
+    def places(self, eta: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        """Return z, complex (n, rows), at all ``eta`` (rows,) and ``xi`` (n,)."""
+        k = np.arange(len(self.shape))
+        around = np.exp(-1j * np.outer(xi, k))
+        series = around @ (self.shape[:, None] * np.exp(-np.outer(k, eta)))
+        return 2.0 * self.scale * np.cosh(eta + 1j * xi[:, None]) + series
+
 
 class Mapping:
     """Solves for maps on one grid and evaluates them on the membrane."""
