@@ -3,6 +3,7 @@
 """What numba needs to be told once in a process: when not to collect, and what to compile anew."""
 
 import gc
+import re
 from functools import cache
 from pathlib import Path
 
@@ -43,9 +44,9 @@ def forget_stale(package: Path) -> None:
     Numba compiles a function anew when its own file has changed, but not when one has that it
     calls: a change of one kernel would have no effect on the step that it is part of.
     """
-    sources = [path for path in package.rglob('*.py') if 'numba' in path.read_text('utf-8')
-               or 'fluid.kernels import' in path.read_text('utf-8')]
-    changed = max((path.stat().st_mtime for path in sources), default=0.0)
+    changed = max((path.stat().st_mtime for path in package.rglob('*.py')
+                   if re.search('numba|fluid.kernels import', path.read_text('utf-8'))),
+                  default=0.0)
     for index in package.rglob('__pycache__/*.nbi'):
         try:
             if index.stat().st_mtime < changed:
