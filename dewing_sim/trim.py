@@ -26,6 +26,9 @@ from dewing_sim.wing import State, Wing
 
 QUASI_STEADY = 10.0                 # c/U
 PROGRESS_STEPS = 50                 # between calls of `progress`
+# Modules beside `fluid` and `structure` on which a step and the rest state depend.
+SOLVER = ('amplifier', 'disturbance', 'encounter', 'engine_choice', 'interface', 'membrane_step',
+          'passive', 'plate', 'scales', 'transfer', 'trim', 'wing')
 
 
 def rest(wing: Wing, progress=None) -> State:
@@ -90,9 +93,7 @@ def solver_sources() -> bytes:
     """Return the text of the modules that compute a step and the rest state."""
     package = Path(__file__).parent
     sources = [*package.glob('fluid/**/*.py'), *package.glob('structure/*.py'),
-               *(package / f'{name}.py' for name in (
-                   'amplifier', 'disturbance', 'encounter', 'engine_choice', 'interface',
-                   'passive', 'plate', 'scales', 'trim', 'wing'))]
+               *(package / f'{name}.py' for name in SOLVER)]
     return b''.join(source.read_bytes() for source in sorted(sources))
 
 

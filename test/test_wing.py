@@ -132,3 +132,15 @@ def test_a_file_that_is_no_state_is_refused(tmp_path):
     np.savez(path, a=1)
     with pytest.raises(BadInput, match='not a saved wing state'):
         checkpoint.load(path)
+
+
+def test_rest_states_depend_on_every_module_that_computes_them():
+    code = ('import sys, dewing_sim.trim, dewing_sim.passive\n'
+            'names = (name.split(".") for name in sys.modules)\n'
+            'print(*{name[1] for name in names if name[0] == "dewing_sim" and name[1:]})')
+    loaded = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                            check=True).stdout.split()
+    # Files, checks and how numba compiles; `fluid` and `structure` are taken as a whole.
+    others = {'checkpoint', 'compilation', 'errors', 'files', 'fluid', 'parameters', 'plant',
+              'schema', 'structure'}
+    assert set(loaded) - others == set(trim.SOLVER)
