@@ -57,8 +57,9 @@ def run(arguments: argparse.Namespace) -> None:
     finally:
         if len(recorder):
             _keep(arguments.save_state, state, loop.plant.case)
-            metrics = _metrics(arguments, case, loop, recorder.history(), laps)
-            _deliver(arguments, case, metrics | watch.metrics(), recorder.history())
+            history = recorder.history()
+            metrics = _metrics(arguments, case, loop, history, laps) | watch.metrics()
+            _deliver(arguments, case, metrics, history)
 
 
 def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
