@@ -75,11 +75,11 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            'dewing = dewing_control.cli:main',
-            'dewing_simulator = dewing_sim.node:main',
+            'dewing = dewing_cli.main:main',
+            'dewing_simulator = dewing_sim.ros.node:main',
             'dewing_controller = dewing_control.node:main',
             'dewing_sysid = dewing_sysid.node:main',
-            'dewing_recorder = dewing_sim.recorder:main',
+            'dewing_recorder = dewing_sim.ros.recorder:main',
         ],
     },
     zip_safe=False,

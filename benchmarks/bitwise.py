@@ -187,7 +187,8 @@ def compare(before: Path, after: Path, renamed: dict[str, str]) -> int:
             continue
         twin = after / path.relative_to(before)
         found = dict(values(twin)) if twin.is_file() else {}
-        wanted = {renamed.get(name, name): value for name, value in values(path)}
+        wanted = {renamed.get(name, name): value for name, value in values(path)
+                  if not TIMES.search(name)}
         for name, value in wanted.items():
             if name not in found:
                 wrong.append(f'{path.name}: {name} is missing')

@@ -25,7 +25,7 @@ from dewing_sim.files import check_free
 
 WARM_UP = 200               # steps
 CONFIGURATIONS = {'one_process': (), 'two_processes': ('dewing_control.node',),
-                  'two_processes_and_recorder': ('dewing_control.node', 'dewing_sim.recorder')}
+                  'two_processes_and_recorder': ('dewing_control.node', 'dewing_sim.ros.recorder')}
 PATIENCE = 1.0e5            # s
 
 
@@ -44,8 +44,8 @@ def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) ->
     ``watch(step, processes)`` is called before every step.
     """
     from dewing_control.node import ControllerNode
-    from dewing_sim import harness
-    from dewing_sim.node import SimulatorNode
+    from dewing_sim.ros import harness
+    from dewing_sim.ros.node import SimulatorNode
     times, processes = np.full(steps, np.nan), []
 
     class Timed(SimulatorNode):

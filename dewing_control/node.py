@@ -12,12 +12,13 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
-from dewing_control.closed_loop import controller, same_memory
 from dewing_control.settings import ControllerSettings
-from dewing_sim import harness, messages, parameters, qos
+from dewing_control.trial.closed_loop import controller, same_memory
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
-from dewing_sim.status import Status
+from dewing_sim.ros import harness, messages, qos
+from dewing_sim.ros.status import Status
 
 
 class ControllerNode(Node):

@@ -46,7 +46,7 @@ def build(settings: SimulatorSettings, case: Case, progress=None) -> Built:
 
 def build_wing(case: Case, progress=None) -> Built:
     """Return the Navier-Stokes wing of ``case``, trimmed."""
-    from dewing_sim import checkpoint, passive
+    from dewing_sim.rest import checkpoint, passive
     from dewing_sim.wing import Wing
     wing = Wing(case)
     rest = wing.rest(progress)

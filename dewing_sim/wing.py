@@ -8,44 +8,26 @@ changes.
 """
 
 import math
-from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
-from dewing_sim import compilation, engine_choice, interface
-from dewing_sim.amplifier import Amplifier
-from dewing_sim.disturbance import wall_pressure
-from dewing_sim.encounter import Encounter
+from dewing_sim.coupling import engine_choice, interface
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import HIGH_SLIP, Monitor
-from dewing_sim.fluid.onset import Onset
+from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.plate import starting_circulation
+from dewing_sim.inputs.amplifier import Amplifier
+from dewing_sim.inputs.disturbance import wall_pressure
+from dewing_sim.inputs.inflow_schedule import Encounter
+from dewing_sim.machine import compilation
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
-from dewing_sim.plate import starting_circulation
+from dewing_sim.rest import trim
 from dewing_sim.scales import Scales
+from dewing_sim.state import State
 from dewing_sim.structure import elements
-from dewing_sim.structure.dynamics import Motion, Operator
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """Everything the next step depends on; lengths in chords, speeds in U."""
-
-    step: int
-    v_squared: float                # V^2 held during the last step
-    flow: Any
-    motion: Motion
-    iterations: int = 0             # coupling passes of the last step
-    residual: float = 0.0           # its last relative change of shape
-    still_jumps: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))   # see `Coupled`
-
-    @classmethod
-    def after(cls, step: int, v_squared: float, coupled: interface.Coupled) -> 'State':
-        """Return the state at the end of a coupled step."""
-        return cls(step, v_squared, coupled.flow, coupled.motion, coupled.iterations,
-                   coupled.residual, coupled.still_jumps)
+from dewing_sim.structure.dynamics.step import Operator
 
 
 class Wing:
@@ -77,8 +59,6 @@ class Wing:
 
         ``progress(done, total)`` is called along the way if the state has to be computed.
         """
-        from dewing_sim import trim  # here because trim marches a Wing
-
         return trim.rest(self, progress)
 
     def step(self, state: State, v_squared: float) -> State:

@@ -14,11 +14,12 @@ from std_msgs.msg import Float64, Float64MultiArray, String
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory
 
-from dewing_sim import harness, parameters, qos
-from dewing_sim import messages as common
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
 from dewing_sim.files import check_free
 from dewing_sim.identity import Identity
+from dewing_sim.ros import harness, qos
+from dewing_sim.ros import messages as common
 from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
 from dewing_sysid.experiment import save_records

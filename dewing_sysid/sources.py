@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from dewing_sim import bag
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
 from dewing_sim.lockstep import nanoseconds
+from dewing_sim.records import bag
 from dewing_sysid.experiment import STANDARD, Record, load_records
 from dewing_sysid.plan import BASELINE, EXPERIMENT, FRESH, HALF, SWEEP, case_of
 

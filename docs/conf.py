@@ -32,7 +32,8 @@ html_copy_source = False
 myst_enable_extensions = ['dollarmath']
 myst_heading_anchors = 4
 
-autoapi_dirs = [str(PROJECT / name) for name in ('dewing_sim', 'dewing_sysid', 'dewing_control')]
+autoapi_dirs = [str(PROJECT / name) for name in (
+    'dewing_sim', 'dewing_sysid', 'dewing_control', 'dewing_cli')]
 autoapi_options = ['members', 'undoc-members', 'show-inheritance', 'show-module-summary']
 autoapi_add_toctree_entry = False
 autoapi_python_class_content = 'both'

@@ -3,7 +3,7 @@
 """Every command that README.md, CONTRIBUTING.md and docs/ show, and where each is executed.
 
 ``python scripts/documented_commands.py`` (``make long``) executes the long ones, an hour or more.
-``test/test_documents.py`` executes all others, shortened, and the Python, and fails
+``test/project/test_documents.py`` executes all others, shortened, and the Python, and fails
 for a command that nobody executes.
 """
 
@@ -40,7 +40,7 @@ SHORT = {
 # Blocks that `make long` executes, by their first line.
 LONG = (
     'make demo', 'python3 -m venv ~/dewing-env',
-    "make test PYTEST_OPTIONS='test/test_examples.py'",
+    "make test PYTEST_OPTIONS='test/sim/ros/test_examples.py'",
     'dewing material --case paper --out docs/images/material/paper --force',
     'dewing paper --out out/paper',
     'dewing_controller &', 'dask scheduler --port 8786 &',
@@ -64,8 +64,9 @@ ELSEWHERE = {
     'make long': 'executes all others',
     'make links': 'needs the network',
     'dewing plot last.npz --film 0.04 --out shedding.gif':
-        'test/test_plot.py does, with fewer frames',
-    'dewing identify --from run.mcap': 'test/test_sysid_node.py does, with a recorded campaign',
+        'test/cli/test_plot.py does, with fewer frames',
+    'dewing identify --from run.mcap':
+        'test/sysid/test_sysid_node.py does, with a recorded campaign',
 }
 # Blocks that need a system ROS; `make long` executes them where there is one.
 SYSTEM_ROS = ('source /opt/ros/jazzy/setup.bash', 'ros2 run dewing', 'ros2 launch dewing')

@@ -15,9 +15,10 @@ from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 
 from dewing_control.node import ControllerNode
-from dewing_sim import harness, parameters
-from dewing_sim.node import SimulatorNode
-from dewing_sim.recorder import RecorderNode
+from dewing_sim import parameters
+from dewing_sim.ros import harness
+from dewing_sim.ros.node import SimulatorNode
+from dewing_sim.ros.recorder import RecorderNode
 from dewing_sysid.node import SysidNode
 
 PAGE = Path(__file__).parents[1] / 'docs' / 'ros-reference.md'
@@ -26,8 +27,8 @@ QUICK = {'numerics.grid': 'fast', 'numerics.trim_time': 0.1}
 TYPES = {1: 'bool', 2: 'integer', 3: 'double', 4: 'string'}
 HEAD = """# ROS interface reference
 
-Written by `python scripts/ros_reference.py` from the running nodes; `test/test_ros_docs.py`
-compares it with them. [ROS](ros.md) explains what the interface means. Names are those in the
+Written by `python scripts/ros_reference.py` from the running nodes;
+`test/project/test_ros_docs.py` compares it with them. [ROS](ros.md) explains what the interface means. Names are those in the
 default namespace and can be remapped; each node also has the parameter services of every ROS node.
 """
 

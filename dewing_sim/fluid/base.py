@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from dewing_sim.fluid.onset import Onset
+from dewing_sim.fluid.inflow import Onset
 
 EDGE = 0.01                 # chords around an edge where CFL numbers count apart
 HIGH_SLIP = 0.75            # U: half of what stops a run of the conformal engine

@@ -8,7 +8,7 @@ from dewing_sim.fluid.conformal import engine as conformal
 from dewing_sim.fluid.conformal.grid import PRESETS as CONFORMAL_GRIDS
 from dewing_sim.fluid.finite_volume import engine as finite_volume
 from dewing_sim.fluid.finite_volume.grid import PRESETS as FINITE_VOLUME_GRIDS
-from dewing_sim.fluid.memory import keep_freed_arrays
+from dewing_sim.machine.memory import keep_freed_arrays
 
 ENGINES = {'finite_volume': finite_volume.FiniteVolume, 'conformal': conformal.Conformal}
 STATES = {'finite_volume': finite_volume.FlowState, 'conformal': conformal.FlowState}

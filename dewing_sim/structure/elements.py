@@ -6,7 +6,7 @@ from dewing_sim import parameters
 from dewing_sim.scales import Scales
 from dewing_sim.structure.membrane import Membrane
 from dewing_sim.structure.sheet import SI
-from dewing_sim.structure.solid import Solid
+from dewing_sim.structure.solid.solid import Solid
 
 ELEMENTS = {'membrane': Membrane, 'solid': Solid}
 

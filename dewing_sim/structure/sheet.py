@@ -18,7 +18,7 @@ import numpy as np
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.scales import Scales
-from dewing_sim.structure.material import (
+from dewing_sim.structure.material.elastomer import (
     VACUUM_PERMITTIVITY,
     Elastomer,
     deviatoric_stress,
@@ -27,7 +27,7 @@ from dewing_sim.structure.material import (
     slopes,
     stress,
 )
-from dewing_sim.structure.viscosity import Overstress
+from dewing_sim.structure.material.viscosity import Overstress
 
 SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
 NO_OVERSTRESS = Overstress(0.0, np.zeros((2, 0)))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dewing_sim import parameters, spectrum
+from dewing_sim import parameters
+from dewing_sim.records import spectrum
 from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import block_mean, mean_peak
 from dewing_sim.verification.study import Check, Study

@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dewing_sim import parameters, trim
-from dewing_sim.plate import adapt_circulation
+from dewing_sim import parameters
+from dewing_sim.fluid.plate import adapt_circulation
+from dewing_sim.rest import trim
+from dewing_sim.state import State
 from dewing_sim.verification.closed_forms import TRIPLE_DECK, sail_deflection, sail_divergence
 from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import limit
 from dewing_sim.verification.study import Check, Study
-from dewing_sim.wing import State, Wing
+from dewing_sim.wing import Wing
 
 ALPHA = 0.5                         # deg, so that the tension hardly rises
 TENSIONS = (3.5, 5.0)               # C_T = T / (q c)

@@ -13,7 +13,7 @@ from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.fluid.conformal.engine import Conformal
 from dewing_sim.fluid.finite_volume.engine import FiniteVolume
 from dewing_sim.fluid.finite_volume.grid import PRESETS, Spacing, build
-from dewing_sim.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
+from dewing_sim.fluid.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
 
 MILLISECONDS = {                        # expected, of a step of a rigid plate
     'finite_volume': {'fast': 0.4, 'standard': 1.0, 'fine': 4.0},

@@ -10,8 +10,9 @@ import numpy as np
 from dewing_sim import parameters
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
-from dewing_sim.structure.pins import LOWER, MIDDLE
-from dewing_sim.wing import State, Wing
+from dewing_sim.state import State
+from dewing_sim.structure.solid.pins import LOWER, MIDDLE
+from dewing_sim.wing import Wing
 
 PULSE = 1.0e5       # V^2, for one step
 STEPS = 300

@@ -8,12 +8,13 @@ import numpy as np
 
 from dewing_sim import parameters
 from dewing_sim.fluid.base import Wall
-from dewing_sim.structure.dynamics import Motion
+from dewing_sim.state import State
+from dewing_sim.structure.dynamics.step import Motion
 from dewing_sim.verification.closed_forms import frequencies_in_air
 from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import ringing
 from dewing_sim.verification.study import Check, Study
-from dewing_sim.wing import State, Wing
+from dewing_sim.wing import Wing
 
 SLOW = 0.03                         # m/s, a stream too slow to matter
 AMPLITUDE = 1.0e-4                  # chords

@@ -7,10 +7,10 @@ from typing import Any, Iterator
 
 import numpy as np
 
-from dewing_sim.encounter import Course, Encounter
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
-from dewing_sim.plate import starting_circulation
+from dewing_sim.fluid.plate import starting_circulation
+from dewing_sim.inputs.inflow_schedule import Course, Encounter
 from dewing_sim.verification.closed_forms import TRIPLE_DECK, WAGNER, oscillating_plate
 from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import limit

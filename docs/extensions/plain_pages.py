@@ -11,7 +11,7 @@ import re
 
 MODULE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control)(?:/\w+)*?)(?:/__init__)?\.py\)')
 PACKAGE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control)(?:/\w+)*)/?\)')
-PACKAGES = ('dewing_sim', 'dewing_sysid', 'dewing_control')
+PACKAGES = ('dewing_sim', 'dewing_sysid', 'dewing_control', 'dewing_cli')
 OUTSIDE = re.compile(r'\[([^]]+)\]\((?:\.\./)+\w+\.md[^)]*\)')
 SECTION = re.compile(r'^## (.+)$', re.M)
 PAGE = re.compile(r'\]\(((?!\.\./)[\w/-]+)\.md\)')

@@ -15,7 +15,7 @@ a time, so that both fill SIMD lanes.
 import numpy as np
 
 from dewing_sim.fluid.conformal.transport import UPWIND
-from dewing_sim.fluid.kernels import stage
+from dewing_sim.machine.kernels import stage
 
 LANES = 24
 SPLITTING = 0.5

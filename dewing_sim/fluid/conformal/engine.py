@@ -24,7 +24,7 @@ from dewing_sim.fluid.conformal.geometry import Geometry, Surroundings
 from dewing_sim.fluid.conformal.grid import LARGEST_STEP, PRESETS, Grid
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.pressure import added_mass, force
-from dewing_sim.fluid.onset import Onset
+from dewing_sim.fluid.inflow import Onset
 
 PINNED = 1.0e-9         # chords
 

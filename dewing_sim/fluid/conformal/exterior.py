@@ -9,7 +9,7 @@ import numpy as np
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.spectral import Plan
 from dewing_sim.fluid.conformal.stockham import transform
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 class Exterior(NamedTuple):

@@ -18,7 +18,7 @@ from scipy import fft
 from dewing_sim.fluid.conformal.geometry import Surroundings, WallMotion
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.mapping import Map
-from dewing_sim.fluid.onset import Onset
+from dewing_sim.fluid.inflow import Onset
 
 STILL = np.empty((0, 0))
 

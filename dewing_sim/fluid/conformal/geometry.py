@@ -9,7 +9,7 @@ import numpy as np
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.conformal.exterior import Exterior
 from dewing_sim.fluid.conformal.mapping import Line, Map, Mapping
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 class WallMotion(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 from dewing_sim.fluid.conformal.exterior import Exterior, series
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.stockham import Buffers
-from dewing_sim.fluid.kernels import stage
+from dewing_sim.machine.kernels import stage
 
 
 def metric(exterior: Exterior, m: Map) -> np.ndarray:

@@ -23,7 +23,7 @@ from scipy.linalg import eigh
 
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.poisson import Poisson
-from dewing_sim.fluid.kernels import stage
+from dewing_sim.machine.kernels import stage
 
 BLOCK = 4                   # modes added at once; divides the number of nodes
 NEGLIGIBLE_SLIP = 1.0e-6

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.kernels import stage
+from dewing_sim.machine.kernels import stage
 
 
 class Poisson(NamedTuple):

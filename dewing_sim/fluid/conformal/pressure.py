@@ -20,7 +20,7 @@ from scipy import fft
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.spectral import line_modes, line_values
 from dewing_sim.fluid.conformal.stockham import transform
-from dewing_sim.fluid.kernels import kernel, stage, summing_kernel
+from dewing_sim.machine.kernels import kernel, stage, summing_kernel
 
 
 class WallPressure(NamedTuple):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.fluid.conformal.stockham import Turns, transform
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 class Plan(NamedTuple):

@@ -17,7 +17,7 @@ from dewing_sim.fluid.conformal.metric import measure
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.pressure import WallPressure
 from dewing_sim.fluid.conformal.stockham import Buffers
-from dewing_sim.fluid.kernels import kernel, scratch, stage
+from dewing_sim.machine.kernels import kernel, scratch, stage
 
 
 class Fields(NamedTuple):

@@ -21,7 +21,7 @@ import numpy as np
 from numba import types
 
 from dewing_sim.errors import BadInput
-from dewing_sim.fluid.kernels import kernel, scratch
+from dewing_sim.machine.kernels import kernel, scratch
 
 RADICES = (3, 2, 4)         # in the order of the stages: the last has the shortest loops
 SIN_3 = np.sin(np.pi / 3.0)

@@ -12,7 +12,7 @@ lines from ``first`` to before ``stop``: a few lines pass through all of them wh
 import numpy as np
 
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.kernels import stage
+from dewing_sim.machine.kernels import stage
 
 FIRST_ORDER = 0.65      # radius about an edge, per dt, of first-order extrapolation
 UPWIND = 0.5            # share of the dissipation of third-order upwind fluxes

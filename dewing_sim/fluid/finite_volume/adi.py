@@ -9,7 +9,7 @@ buffer that stays in the first-level cache.
 
 import numpy as np
 
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 LANES = 16
 

@@ -18,7 +18,7 @@ from dewing_sim.fluid.finite_volume import adi, mapping, momentum, projection, t
 from dewing_sim.fluid.finite_volume.grid import PRESETS, Grid, build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.potential import Potential
-from dewing_sim.fluid.onset import Onset
+from dewing_sim.fluid.inflow import Onset
 
 UPWIND_SHARE = 0.5                  # in the far field only
 UPWIND_START, UPWIND_FULL = 1.0, 4.0    # chords from the plate

@@ -13,7 +13,7 @@ import numpy as np
 from dewing_sim.errors import Diverged
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.finite_volume.grid import Grid
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 class Metrics(NamedTuple):

@@ -14,7 +14,7 @@ Terms with the slope s vanish away from the membrane and are added there only.
 
 import numpy as np
 
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 @kernel

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from dewing_sim.fluid.finite_volume.grid import Grid
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 @dataclass(frozen=True)

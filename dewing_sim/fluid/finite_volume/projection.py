@@ -11,7 +11,7 @@ import numpy as np
 
 from dewing_sim.fluid.finite_volume.grid import Grid
 from dewing_sim.fluid.finite_volume.mapping import Decay, Metrics
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 def fluxes(grid: Grid, g: Decay, m: Metrics, u: np.ndarray, v: np.ndarray,

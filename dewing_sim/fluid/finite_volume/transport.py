@@ -13,7 +13,7 @@ has zero row sum: a uniform stream is kept exactly on any moving grid, without a
 conservation law.  Fluxes (Fx, W) are those of the projection less the motion of the grid.
 """
 
-from dewing_sim.fluid.kernels import kernel
+from dewing_sim.machine.kernels import kernel
 
 
 @kernel

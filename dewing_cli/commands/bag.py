@@ -1,0 +1,54 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Say what a recorded bag holds, or draw it.
+
+``info`` lists topics, messages, the plant and the last words of the nodes; ``plot`` draws camber
+and voltage against simulated time. Bags of ``ros2 bag record`` and of our recorder are read alike,
+also those of a recorder that was killed.
+"""
+
+import argparse
+from pathlib import Path
+
+from dewing_cli import options, results
+from dewing_sim.files import check_free
+
+ACTIONS = {'info': None, 'plot': None}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument('action', metavar='ACTION', help=' or '.join(ACTIONS))
+    parser.add_argument('file', metavar='FILE', help='MCAP file')
+    options.add_results(parser, 'PNG to draw into (default: FILE with .png)')
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Describe or draw the bag."""
+    options.one_of('ACTION', arguments.action, ACTIONS)
+    if arguments.json:
+        check_free(arguments.json, arguments.force)
+    if arguments.action == 'info':
+        _info(arguments)
+    else:
+        _plot(arguments)
+
+
+def _info(arguments: argparse.Namespace) -> None:
+    from dewing_sim.records import bag_summary
+    summary = bag_summary.summary(arguments.file)
+    if arguments.json:
+        results.write_json(arguments.json, summary, arguments.force)
+    if not arguments.quiet:
+        print('\n'.join(bag_summary.lines(summary)))
+
+
+def _plot(arguments: argparse.Namespace) -> None:
+    from dewing_sim.records import bag_summary
+    out = Path(arguments.out or Path(arguments.file).with_suffix('.png'))
+    check_free(out, arguments.force)
+    metrics = bag_summary.draw(arguments.file, out, arguments.force)
+    if arguments.json:
+        results.write_json(arguments.json, metrics, arguments.force)
+    if not arguments.quiet:
+        print('figure:', out)

@@ -1,0 +1,52 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Compare the solvers with independent codes and closed forms.
+
+Prints a table of ours, reference, source, difference and gate; exit status 1 if a gate fails. The
+full suite takes about ten minutes on two cores, --quick about one.
+"""
+
+import argparse
+
+from dewing_cli import options, results
+from dewing_cli.progress import bar
+from dewing_sim.files import check_free
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument('--quick', action='store_true', help='only what takes about a minute')
+    parser.add_argument('--engine', action='append', metavar='NAME',
+                        help=f'verify this flow solver: {", ".join(options.engine_names())}; may '
+                             'be repeated (default: all)')
+    parser.add_argument('--jobs', type=int, metavar='N',
+                        help='processes at once (default: idle cores)')
+    options.add_results(parser, 'folder of the page verification.md and its images')
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Verify, print the table, write what was asked for."""
+    from dewing_sim.fluid.engines import ENGINES
+    engines = list(dict.fromkeys(arguments.engine or ENGINES))
+    for engine in engines:
+        options.one_of('--engine', engine, ENGINES)
+    if arguments.jobs is not None:
+        options.within('--jobs', arguments.jobs, 1, 1024, 'processes')
+    if arguments.json:
+        check_free(arguments.json, arguments.force)
+
+    from dewing_sim.verification import report, suite
+    if arguments.out:
+        check_free(f'{arguments.out}/{report.PAGE}', arguments.force)
+    with bar('verifying', quiet=arguments.quiet) as show:
+        verification = suite.verify(engines, arguments.quick, arguments.jobs, show)
+    if not arguments.quiet:
+        print(report.text_table(verification.all_checks))
+        print(f'{report.summary(verification)}; {verification.seconds:.0f} s')
+    if arguments.json:
+        results.write_json(arguments.json, {
+            'cases': [check.to_mapping() for check in verification.all_checks],
+            'seconds': verification.seconds}, arguments.force)
+    if arguments.out:
+        report.write(verification, arguments.out, arguments.force)
+    return 1 if verification.missed else 0

@@ -1,0 +1,155 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The paper's section 3.3 as processes over ROS 2: the wing under a disturbance, open and closed.
+
+Each run is a simulator, a recorder and, closed, a controller, in a ROS domain of their own. All
+results are computed from the recorded bags.
+"""
+
+import sys
+import tempfile
+from argparse import Namespace
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from subprocess import Popen
+from time import perf_counter
+from typing import Any
+
+from dewing_cli import options
+from dewing_cli.demo import results as demo_results
+from dewing_cli.progress import bar
+from dewing_cli.results import write_json
+from dewing_control.settings import ControllerSettings
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput, RunFailed
+from dewing_sim.files import check_free
+from dewing_sim.parameters import Case
+from dewing_sim.records import bag
+from dewing_sim.ros import harness
+
+RUNS = ('open_loop', 'closed_loop')
+GLANCE = 0.2                # s between two looks at the processes
+
+
+@dataclass(frozen=True)
+class Demo:
+    """What is run for how long (s of simulated time), and the folder of the results."""
+
+    case: Case
+    settings: ControllerSettings
+    duration: float
+    out: Path
+    quiet: bool = False
+
+    def bag(self, name: str) -> Path:
+        """Return the bag of one of `RUNS`."""
+        return self.out / f'{name}.mcap'
+
+    @property
+    def results(self) -> list[Path]:
+        """Every file the demo writes."""
+        others = ('case.yaml', 'closed_loop.png', 'metrics.json')
+        return [*map(self.bag, RUNS), *(self.out / name for name in others)]
+
+
+def run(arguments: Namespace) -> None:
+    """Run the demo as the command line asks, then print its table."""
+    case = options.load_case(arguments)
+    options.steps_of(arguments.duration, case.numerics.time_step, 's')
+    settings = parameters.load(arguments.controller, ControllerSettings)
+    if arguments.json:
+        check_free(arguments.json, arguments.force)
+    demo = Demo(case, settings, arguments.duration, Path(arguments.out), arguments.quiet)
+    metrics = perform(demo, arguments.force)
+    if arguments.json:
+        write_json(arguments.json, metrics, arguments.force)
+    if not arguments.quiet:
+        demo_results.print_table(metrics)
+        print('figure:', demo.out / 'closed_loop.png')
+
+
+def perform(demo: Demo, overwrite: bool = False) -> dict[str, Any]:
+    """Run open and closed loop, write figure and metrics, and return the metrics.
+
+    Raises `BadInput` if results exist and may not be overwritten, `RunFailed` if a process fails.
+    An interrupt stops all processes in order, says which bags are kept, and goes on up.
+    """
+    began = perf_counter()
+    for path in demo.results:
+        check_free(path, overwrite)
+        path.unlink(missing_ok=True)
+    demo.out.mkdir(parents=True, exist_ok=True)
+    (demo.out / 'case.yaml').write_text(parameters.to_yaml(demo.case), encoding='utf-8')
+    try:
+        with harness.Stop() as stop:
+            trim(demo)
+            stop.orderly = True
+            for name in RUNS:
+                record(demo, name, stop)
+                if stop.asked:
+                    raise KeyboardInterrupt
+    except KeyboardInterrupt:
+        report_kept(demo)
+        raise
+    return evaluate(demo, began)
+
+
+def trim(demo: Demo) -> None:
+    """March the wing to its rest state, once: the simulators find it in the cache."""
+    from dewing_sim.wing import Wing
+    with bar('trim', quiet=demo.quiet) as show:
+        Wing(demo.case).rest(show)
+
+
+def record(demo: Demo, name: str, stop: harness.Stop) -> None:
+    """Run one of `RUNS` to its end, or until ``stop`` is asked for, and leave its bag."""
+    closed = name == 'closed_loop'
+    with ExitStack() as stack:
+        domain = stack.enter_context(harness.reserved_domain())
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix='dewing-demo-')))
+        env = harness.environment(domain, str(folder))
+
+        def start(module: str, settings: dict[str, Any]) -> Popen:
+            log = stack.enter_context(open(folder / f'{module}.txt', 'wb'))
+            process = harness.start_node(module, settings, env, stdout=log, stderr=log)
+            stack.callback(harness.stop_node, process)
+            return process
+
+        start('dewing_sim.ros.recorder', {'output': demo.bag(name).resolve()})
+        if closed:
+            start('dewing_control.node', {
+                name: value for name, value, _ in parameters.leaves(demo.settings)})
+        simulator = start('dewing_sim.ros.node', {
+            'case': (demo.out / 'case.yaml').resolve(), 'run.duration': demo.duration,
+            'run.mode': 'lockstep' if closed else 'free', 'run.subscribers': 2 if closed else 1})
+        session = stack.enter_context(harness.Session(domain))
+        clock = session.watch_clock()
+        with bar(name.replace('_', ' '), quiet=demo.quiet) as show:
+            while simulator.poll() is None and not stop.asked:
+                session.executor.spin_once(timeout_sec=GLANCE)
+                show(clock.time, demo.duration, clock.time)
+        if simulator.poll():
+            said = (folder / 'dewing_sim.ros.node.txt').read_text().strip().splitlines()
+            raise RunFailed(f"{name}: {said[-1] if said else 'the simulator failed'}")
+
+
+def report_kept(demo: Demo) -> None:
+    """Say which bags an interrupted demo leaves, and how far they reach."""
+    for name in RUNS:
+        try:
+            end = bag.series(demo.bag(name), demo_results.MEASUREMENT)['time'][-1]
+        except BadInput:
+            continue
+        print(f'dewing: kept {demo.bag(name)} up to {end:.4f} s', file=sys.stderr)
+
+
+def evaluate(demo: Demo, began: float) -> dict[str, Any]:
+    """Write figure and metrics of the recorded bags; return the metrics."""
+    runs = {name: demo_results.Run.read(demo.bag(name)) for name in RUNS}
+    metrics = demo_results.metrics(runs, demo.case, demo.settings.command.voltage_limit,
+                                   demo.duration)
+    demo_results.draw(runs, demo.settings.reference.target - 1.0, demo.out / 'closed_loop.png')
+    metrics['seconds'] = perf_counter() - began
+    write_json(demo.out / 'metrics.json', metrics)
+    return metrics

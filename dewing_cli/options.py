@@ -1,0 +1,91 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Options that commands share, and what they mean."""
+
+import argparse
+import math
+from typing import Any
+
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput
+from dewing_sim.inputs.disturbance import DISTURBANCES
+from dewing_sim.parameters import Case, Numerics
+
+NUMERICS = {'engine': 'numerics.engine', 'grid': 'numerics.grid', 'dt': 'numerics.time_step'}
+
+
+def add_case(parser: argparse.ArgumentParser) -> None:
+    """Declare --case, --set and --disturbance."""
+    group = parser.add_argument_group('case')
+    group.add_argument('--case', default='paper', metavar='NAME|FILE',
+                       help='shipped case or YAML file (default: paper)')
+    group.add_argument('--set', action='append', default=[], metavar='SECTION.KEY=VALUE',
+                       help='change one parameter; may be repeated')
+    group.add_argument('--disturbance', metavar='NAME',
+                       help=f'{", ".join(DISTURBANCES)} (default: as in the case)')
+
+
+def add_numerics(parser: argparse.ArgumentParser, time: str) -> None:
+    """Declare --engine, --grid, --dt and --duration, in units of ``time``."""
+    group = parser.add_argument_group('numerics')
+    for name, help in (('engine', 'flow solver'), ('grid', 'flow grid preset')):
+        options = numerics_field(name).metadata['options']
+        group.add_argument(f'--{name}', metavar='NAME', help=f'{help}: {", ".join(options)}')
+    group.add_argument('--dt', type=float, metavar=time.upper(), help=f'time step in {time}')
+    group.add_argument('--duration', type=float, metavar=time.upper(),
+                       help=f'simulated time in {time}')
+
+
+def add_results(parser: argparse.ArgumentParser, out: str | None = None) -> None:
+    """Declare --json, --force and --quiet, and --out with the help text ``out``."""
+    group = parser.add_argument_group('results')
+    if out:
+        group.add_argument('--out', metavar='PATH', help=out)
+    group.add_argument('--json', metavar='FILE', help='write the metrics as JSON')
+    group.add_argument('--force', action='store_true', help='write over existing files')
+    group.add_argument('--quiet', action='store_true', help='no progress and no table')
+
+
+def numerics_field(option: str) -> Any:
+    """Return the field of `Numerics` that an option of `add_numerics` sets."""
+    name = NUMERICS[option].partition('.')[2]
+    return Numerics.__dataclass_fields__[name]
+
+
+def engine_names() -> tuple[str, ...]:
+    """Return the engines themselves, without ``auto``."""
+    return tuple(name for name in numerics_field('engine').metadata['options'] if name != 'auto')
+
+
+def load_case(arguments: argparse.Namespace) -> Case:
+    """Return the case with every option applied; raise `BadInput` for anything unusable."""
+    changes = dict(map(parameters.parse_assignment, arguments.set))
+    for option, name in NUMERICS.items():
+        value = getattr(arguments, option)
+        if value is not None:
+            changes[name] = value
+    if arguments.disturbance is not None:
+        changes |= one_of('--disturbance', arguments.disturbance, DISTURBANCES)
+    return parameters.load(arguments.case, Case, changes)
+
+
+def one_of(option: str, name: str, table: dict) -> Any:
+    """Return ``table[name]``; raise `BadInput` for a name that is not there."""
+    if name not in table:
+        raise BadInput(f'{option} {name} is not known; one of {", ".join(table)}')
+    return table[name]
+
+
+def within(option: str, value: float, low: float, high: float, unit: str) -> float:
+    """Return ``value`` if it lies from ``low`` to ``high``; raise `BadInput` otherwise."""
+    if not low <= value <= high:
+        raise BadInput(f'{option} {value:g} is out of range: from {low:g} to {high:g} {unit}')
+    return value
+
+
+def steps_of(duration: float, dt: float, unit: str) -> int:
+    """Return the number of steps in ``duration``; raise `BadInput` if it is less than one."""
+    if not (math.isfinite(duration) and duration >= dt):
+        raise BadInput(f'--duration {duration:g} {unit} is out of range: at least one time step '
+                       f'of {dt:g} {unit}')
+    return round(duration / dt)

@@ -1,0 +1,153 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""A parameter sweep: its points, and one point as a pure function of its inputs.
+
+A point is the case with one value of each varied parameter, simulated from its rest state under
+its constant `actuation.voltage`. Nothing here knows how points are distributed.
+"""
+
+import hashlib
+import itertools
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple, Sequence
+
+import numpy as np
+
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput, DewingError
+from dewing_sim.machine.fingerprint import fingerprint
+from dewing_sim.parameters import Case
+
+MOST_POINTS = 100_000
+MISSING, DONE, FAILED, LOST = range(4)      # LOST: neither a result nor a reason of our own
+STATUS = ('missing', 'done', 'failed', 'lost')
+
+METRICS = {
+    'cl_mean': ('-', 'mean lift coefficient'),
+    'cl_rms': ('-', 'standard deviation of the lift coefficient'),
+    'cl_amplitude': ('-', 'half the range of the lift coefficient'),
+    'cd_mean': ('-', 'mean drag coefficient'),
+    'cm_mean': ('-', 'mean moment coefficient about c/4, nose up'),
+    'strouhal': ('-', 'f c / U of the strongest line of the lift, missing if it is steady'),
+    'y_star': ('-', 'mean largest camber over q c^2 / (8 T0)'),
+    'camber_mean': ('m', 'mean of the chord average of the camber'),
+    'camber_amplitude': ('m', 'half the range of the chord average of the camber'),
+    'camber_max': ('m', 'mean largest camber'),
+    'camber_max_x_c': ('-', 'mean place of the largest camber, x/c'),
+    'tension': ('N/m', 'mean tension'),
+    'electric_field_max': ('V/m', 'largest true field V/h'),
+    'coupling_iterations_mean': ('-', 'mean coupling passes in a step'),
+    'seconds': ('s', 'wall time of the point, rest state included'),
+}
+
+
+class Axis(NamedTuple):
+    """A varied parameter and its values, all of one type."""
+
+    key: str
+    values: tuple
+
+
+class Point(NamedTuple):
+    """One place of a sweep: indices along its axes, and the case there."""
+
+    index: tuple[int, ...]
+    case: Case
+
+
+class Result(NamedTuple):
+    """What became of a point: one of `STATUS`, the reason of a failure, some of `METRICS`."""
+
+    status: int
+    reason: str
+    metrics: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Every combination of the values of all axes; times in s, averages from ``skip`` on."""
+
+    base: Case
+    axes: tuple[Axis, ...]
+    duration: float
+    skip: float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The number of values of each axis."""
+        return tuple(len(axis.values) for axis in self.axes)
+
+    @cached_property
+    def points(self) -> list[Point]:
+        """All points, the last axis fastest; raises `BadInput` for a value out of range."""
+        keys = [axis.key for axis in self.axes]
+        combinations = itertools.product(*(axis.values for axis in self.axes))
+        return [Point(index, parameters.replace(self.base, dict(zip(keys, values))))
+                for index, values in zip(np.ndindex(*self.shape), combinations)]
+
+    def fingerprint(self, point: Point) -> str:
+        """Return a hash of all that the result of ``point`` depends on, the code included."""
+        inputs = parameters.to_yaml(point.case) + f'{self.duration!r} {self.skip!r}'
+        return hashlib.sha256((inputs + fingerprint(__name__)).encode()).hexdigest()[:24]
+
+
+def parse_axes(texts: Sequence[str]) -> tuple[Axis, ...]:
+    """Return the axes of ``key=a,b,c`` texts; raise `BadInput` for anything ambiguous."""
+    axes = tuple(map(_axis, texts))
+    keys = [axis.key for axis in axes]
+    for key in keys:
+        if keys.count(key) > 1:
+            raise BadInput(f'--vary {key} is given twice: name all its values at once')
+    points = np.prod([len(axis.values) for axis in axes], dtype=float)
+    if points > MOST_POINTS:
+        raise BadInput(f'{points:.0f} points are out of range: from 1 to {MOST_POINTS}')
+    return axes
+
+
+def _axis(text: str) -> Axis:
+    key, equals, listed = text.partition('=')
+    if not equals:
+        raise BadInput(f'--vary {text!r} is not of the form section.key=a,b,c')
+    values = tuple(parameters.parse_assignment(f'{key}={value}')[1]
+                   for value in listed.split(','))
+    for value in values:
+        if values.count(value) > 1:
+            raise BadInput(f'--vary {key}: {value} is given twice')
+    return Axis(key.strip(), values)
+
+
+def run_point(case: Case, duration: float, skip: float) -> Result:
+    """Simulate one point; a failure on purpose of the solvers is a result with its reason."""
+    try:
+        return Result(DONE, '', _simulate(case, duration, skip))
+    except DewingError as error:
+        return Result(FAILED, f'{type(error).__name__}: {" ".join(str(error).split())}', {})
+
+
+def _simulate(case: Case, duration: float, skip: float) -> dict[str, float]:
+    from dewing_cli.progress import Laps
+    from dewing_sim.plant import rollout
+    from dewing_sim.records.history import Recorder
+    from dewing_sim.wing import Wing
+    laps = Laps()
+    wing = Wing(case)
+    steps = round(duration / wing.dt)
+    recorder, strongest = Recorder(every=steps), 0.0
+    for _, outputs in rollout(wing, wing.rest(), lambda _: case.actuation.voltage**2, steps):
+        recorder.add(outputs)
+        strongest = max(strongest, outputs.electric_field)
+    laps.add()
+    metrics = _metrics(wing, recorder.history().since(skip))
+    return metrics | {'electric_field_max': strongest, 'seconds': laps.total}
+
+
+def _metrics(wing: Any, late: Any) -> dict[str, float]:
+    """Return the metrics of the averaged part of a run; a steady wing has no Strouhal number."""
+    from dewing_cli.run_metrics import averages
+    from dewing_sim.records.spectrum import shedding_lines
+    metrics = averages(late, wing.reference_deflection)
+    metrics['cl_amplitude'] = 0.5 * float(np.ptp(late.cl))
+    metrics['camber_amplitude'] = 0.5 * float(np.ptp(late.camber_mean))
+    lines = shedding_lines(late.cl, wing.dt)
+    return metrics | ({'strouhal': lines[0] * wing.scales.time} if lines else {})

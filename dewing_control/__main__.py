@@ -1,9 +1,0 @@
-# Copyright 2026 The dewing authors
-# SPDX-License-Identifier: Apache-2.0
-"""``python -m dewing_control`` is the command ``dewing``."""
-
-import sys
-
-from dewing_control.cli import main
-
-sys.exit(main())

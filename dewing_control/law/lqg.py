@@ -1,0 +1,124 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Linear-quadratic-Gaussian control of the camber with disturbance cancellation.
+
+The regulator minimises sum (a - r)^2 + rho (w + load - w_r)^2 on the design model, where w_r holds
+the camber at r, and takes off the load that the observer sees:
+
+    w = w_r - K (x - x_r) - load.
+
+The observer is told the w that was applied after saturation, so there is nothing to wind up; the
+drifting load gives integral action. V^2/V_L^2 = w/a undoes the bilinear action of V^2.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy import linalg
+
+from dewing_control.law.observer import Observer
+from dewing_control.law.reference import ramp
+from dewing_control.model.design import Design
+from dewing_control.model.loop import Compensator
+from dewing_control.settings import ControllerSettings
+from dewing_sim.identity import Identity
+from dewing_sim.plant import Measurement
+
+LEAST_CAMBER = 0.1          # of the passive one, below which w/a would be ill-conditioned
+
+
+class Memory(NamedTuple):
+    """What the next step depends on; V^2 in V_L^2, None before the first measurement."""
+
+    reference: float | None
+    z: np.ndarray | None            # predicted state of the observer
+    command: float                  # V^2/V_L^2 in force
+
+
+@dataclass(frozen=True, eq=False)
+class Lqg:
+    """LQG from a camber in m to V^2 in V^2."""
+
+    observer: Observer
+    feedback: np.ndarray            # K (n,)
+    output: str
+    target: float
+    rate: float                     # 1/s
+    camber_reference: float         # a_ref in m
+    v_squared_reference: float      # V_L^2
+    v_squared_max: float
+
+    @classmethod
+    def of(cls, settings: ControllerSettings, identity: Identity, model: Design) -> 'Lqg':
+        """Return the controller of ``settings``, designed on ``model``."""
+        reference, command = settings.reference, settings.command
+        if settings.lqg.states == 'fundamental':
+            model = model.fundamental()
+        observer = Observer.of(model, settings.disturbance_model, settings.estimator)
+        return cls(observer, regulator(model, settings.lqg.control_weight)[0],
+                   reference.output, reference.target, reference.rate,
+                   getattr(identity, reference.output), identity.v_squared_slack,
+                   min(command.voltage_limit**2, identity.v_squared_max))
+
+    def start(self, v_squared: float = 0.0) -> Memory:
+        """Return the memory of a controller that takes over, without a bump, at ``v_squared``."""
+        return Memory(None, None, v_squared / self.v_squared_reference)
+
+    def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
+        """Return the next memory and V^2, which is never negative nor above the limit."""
+        reference, z, scale = self.observe(memory, measurement)
+        return self.command(reference, z, scale, self._wanted(z, reference))
+
+    def observe(self, memory: Memory, measurement: Measurement,
+                ) -> tuple[float, np.ndarray, float]:
+        """Return the ramped reference, the corrected state, and the camber in w = V^2 camber."""
+        camber = getattr(measurement, self.output) / self.camber_reference
+        reference = ramp(memory.reference, camber, self.target,
+                         self.rate * self.observer.design.dt)
+        scale = max(camber, LEAST_CAMBER)
+        z = memory.z
+        if z is None:
+            z = self.observer.begin(camber, memory.command * scale)
+        return reference, self.observer.correct(z, camber), scale
+
+    def command(self, reference: float, z: np.ndarray, scale: float, wanted: float,
+                ) -> tuple[Memory, float]:
+        """Return the next memory and V^2 for a ``wanted`` w, within the limits of V^2."""
+        command = min(max(wanted / scale, 0.0), self.v_squared_max / self.v_squared_reference)
+        v_squared = min(command * self.v_squared_reference, self.v_squared_max)
+        return Memory(reference, self.observer.predict(z, command * scale), command), v_squared
+
+    @cached_property
+    def gain(self) -> np.ndarray:
+        """Row vector (m,) of the observer's state: K on x and the load taken off."""
+        gain = self.observer.load.copy()
+        gain[:self.feedback.size] += self.feedback
+        return gain
+
+    @cached_property
+    def hold(self) -> float:
+        """Part of w for each unit of w_r - u0: 1 + K (I - A)^-1 B."""
+        return 1.0 + float(self.feedback @ self.observer.design.steady)
+
+    def _wanted(self, z: np.ndarray, reference: float) -> float:
+        model = self.observer.design
+        held = (reference - 1.0) / model.static_gain
+        return model.operating_input + held * self.hold - float(self.gain @ z)
+
+    def compensator(self) -> Compensator:
+        """Return the law without saturation, from r - a to w."""
+        observer, gain = self.observer, self.gain
+        corrected = np.eye(gain.size) - np.outer(observer.gain, observer.outlet)
+        advance = observer.transition - np.outer(observer.inlet, gain)
+        return Compensator(advance @ corrected, -advance @ observer.gain, -gain @ corrected,
+                           float(gain @ observer.gain))
+
+
+def regulator(model: Design, control_weight: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return K (n,) and the cost P (n, n) of the regulator with rho = ``control_weight``."""
+    cost = linalg.solve_discrete_are(model.a, model.b[:, None], np.outer(model.c, model.c),
+                                     np.array([[control_weight]]))
+    gain = model.b @ cost @ model.a / (control_weight + model.b @ cost @ model.b)
+    return gain, cost

@@ -1,0 +1,49 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""A plant and a controller in one process, without ROS, bit for bit the loop over DDS."""
+
+from typing import Any, Iterator
+
+from dewing_control.law.registry import law
+from dewing_control.law.supervisor import Controller, Supervisor
+from dewing_control.model.design import Design
+from dewing_control.settings import ControllerSettings
+from dewing_sim.identity import Identity
+from dewing_sim.plant import Measurement, Outputs, Plant, rollout
+
+
+def controller(settings: ControllerSettings, identity: Identity, model: Design | None = None,
+               ) -> Supervisor:
+    """Return the supervised controller that ``settings`` describe for a plant, as nodes run it.
+
+    ``model`` is as in `law`.
+    """
+    return Supervisor(law(settings, identity, model), settings.command.period_steps,
+                      settings.command.hold_steps)
+
+
+def same_memory(one: ControllerSettings, other: ControllerSettings) -> bool:
+    """Return whether the controllers of both settings remember the same quantities."""
+    return _form(one) == _form(other)
+
+
+def _form(settings: ControllerSettings) -> tuple:
+    return (settings.kind, settings.model, settings.reference.output, settings.lqg.states,
+            settings.disturbance_model.harmonics, settings.mpc.moves,
+            settings.command.period_steps)
+
+
+def closed_loop(plant: Plant, state: Any, loop: Controller, steps: int,
+                ) -> Iterator[tuple[Any, Outputs]]:
+    """Yield (state, outputs) after each of ``steps`` steps of ``plant`` under ``loop``.
+
+    The controller takes over, without a bump, at the V^2 that led to ``state``.
+    """
+    memory = loop.start(plant.observe(state).v_squared)
+
+    def command(outputs: Outputs) -> float:
+        nonlocal memory
+        memory, v_squared = loop.step(memory, Measurement.of(outputs))
+        return v_squared
+
+    return rollout(plant, state, command, steps)

@@ -1,0 +1,96 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Run every controller on every scenario; controllers know the nominal wing only.
+
+On a wing that differs from the nominal one a controller still measures the camber against the
+passive one, which an operator can read off, but V_L^2, model and sampling time are nominal.
+"""
+
+import dataclasses
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import Any, Iterator, Sequence
+
+from dewing_control.law.supervisor import Controller
+from dewing_control.settings import ControllerSettings
+from dewing_control.trial import closed_loop, trial
+from dewing_control.trial.scenarios import CONTROLLERS, SCENARIOS, Scenario, TwoToneWing
+from dewing_control.tuning.tuning import printed_gains
+from dewing_sim import parameters
+from dewing_sim.build import Built, build_wing
+from dewing_sim.identity import Identity
+from dewing_sim.parameters import Case
+
+KIND = {'pid_paper': 'pid', 'pid_tuned': 'pid'}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is compared: the nominal case, the controllers' settings and the times in s."""
+
+    case: Case
+    settings: ControllerSettings
+    nominal: Identity
+    duration: float
+    skip: float
+
+
+def build(case: Case, scenario: Scenario) -> Built:
+    """Return the wing of ``scenario``, trimmed."""
+    base = parameters.load(scenario.case) if scenario.case else case
+    changed = parameters.replace(base, scenario.changes)
+    built = build_wing(changed)
+    if scenario.second is None:
+        return built
+    return dataclasses.replace(built, plant=TwoToneWing(changed, scenario.second))
+
+
+def controller(name: str, plan: Plan, scenario: Scenario, identity: Identity,
+               ) -> Controller | None:
+    """Return the supervised controller ``name`` for ``scenario``, None for the open loop."""
+    if name == 'open_loop':
+        return None
+    changes = {
+        'kind': KIND.get(name, name), 'reference.target': scenario.target,
+        'reference.rate': scenario.rate, 'disturbance_model.frequency': scenario.told,
+        'command.period_steps': round(
+            plan.settings.command.period_steps * plan.nominal.dt / identity.dt)}
+    if name == 'pid_paper':
+        printed = printed_gains(plan.nominal)
+        changes |= {f'pid.{gain}': value for gain, value in printed.items()}
+        changes['pid.tracking_time'] = printed['kp'] / printed['ki']
+    settings = parameters.replace(plan.settings, changes)
+    known = dataclasses.replace(identity, v_squared_slack=plan.nominal.v_squared_slack)
+    return closed_loop.controller(settings, known)
+
+
+def run_scenario(plan: Plan, name: str, names: Sequence[str] = CONTROLLERS,
+                 ) -> dict[str, tuple[dict[str, Any], trial.Trial]]:
+    """Return figures and trial of each controller on the scenario ``name``."""
+    scenario = SCENARIOS[name]
+    built = build(plan.case, scenario)
+    results: dict[str, Any] = {}
+    for which in names:
+        run = trial.run(built.plant, built.rest, controller(which, plan, scenario, built.identity),
+                        round(plan.duration / built.plant.dt), built.plant.case.membrane,
+                        scenario.noise, passive=built.identity.camber_mean)
+        figures = trial.figures(run, scenario.target, built.identity.v_squared_max, plan.skip)
+        results[which] = figures, run
+    for figures, _ in results.values():
+        if 'open_loop' in results:
+            figures['cl_gain'] = figures['cl_mean'] - results['open_loop'][0]['cl_mean']
+    return results
+
+
+def run_all(plan: Plan, scenarios: Sequence[str], names: Sequence[str], jobs: int,
+            ) -> Iterator[tuple[str, dict]]:
+    """Yield scenario and results, in the order of ``scenarios``, from ``jobs`` processes."""
+    if jobs == 1:
+        for name in scenarios:
+            yield name, run_scenario(plan, name, names)
+        return
+    with ProcessPoolExecutor(jobs, mp_context=get_context('spawn')) as pool:
+        runs = [pool.submit(run_scenario, plan, name, names) for name in scenarios]
+        for name, run in zip(scenarios, runs):
+            yield name, run.result()

@@ -1,0 +1,51 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""A tuned law on the wing it was not designed on: the Navier-Stokes one, beside the model."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from dewing_control.model.design import Design
+from dewing_control.settings import ControllerSettings
+from dewing_control.trial import trial
+from dewing_control.trial.closed_loop import closed_loop, controller
+from dewing_control.tuning.tuning import FREQUENCY, LOAD
+from dewing_sim.build import Built
+from dewing_sim.identity import Identity
+from dewing_sim.reduced import Reduced
+
+AVERAGED = 0.1              # s at the end of a run: one period of the disturbance
+
+
+def on_wing(settings: ControllerSettings, built: Built, model: Design, duration: float,
+            ) -> tuple[trial.Trial, dict[str, Any]]:
+    """Return run and figures of the law on the wing ``built``."""
+    run = trial.run(built.plant, built.rest, controller(settings, built.identity, model),
+                    round(duration / built.plant.dt), built.plant.case.membrane,
+                    passive=built.identity.camber_mean)
+    figures = trial.figures(run, settings.reference.target, built.identity.v_squared_max,
+                            max(duration - AVERAGED, 0.5 * duration))
+    return run, figures
+
+
+def on_model(settings: ControllerSettings, identity: Identity, reduced: Reduced, model: Design,
+             duration: float) -> np.ndarray:
+    """Return the camber (n,) in a_ref of the law on the model disturbed as in Fig. 5."""
+    plant = dataclasses.replace(reduced, disturbance=-LOAD * reduced.operating_outputs,
+                                disturbance_frequency=FREQUENCY)
+    loop = closed_loop(plant, plant.rest(), controller(settings, identity, model),
+                       round(duration / plant.dt))
+    row = reduced.output_names.index(settings.reference.output)
+    passive = reduced.operating_outputs[row]
+    return np.array([getattr(outputs, settings.reference.output) for _, outputs in loop]) / passive
+
+
+def difference(wing: np.ndarray, model: np.ndarray, dt: float) -> dict[str, float]:
+    """Return how far the camber of the wing is from that of the model, in a_ref."""
+    samples = min(wing.size, model.size)
+    late = slice(max(samples - round(AVERAGED / dt), samples // 2), samples)
+    return {'rms': float(np.sqrt(np.mean((wing[:samples] - model[:samples])**2))),
+            'amplitude_wing': float(0.5 * np.ptp(wing[late])),
+            'amplitude_model': float(0.5 * np.ptp(model[late]))}

@@ -1,0 +1,156 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Transfer between membrane nodes and flow columns, which do not match.
+
+Both directions integrate over the overlaps of elements and columns, in the present position, and
+each is the transpose of the other, so force and virtual work pass exactly:
+sum_i dx_i jump_i w_i = sum_k f_k . velocity_k.
+"""
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from dewing_sim.fluid.base import Fluid
+from dewing_sim.fluid.inflow import Onset
+from dewing_sim.structure.dynamics.step import Structure
+
+
+@numba.njit(cache=True, error_model='numpy')
+def overlaps(columns, position):
+    """Return element and column of the overlaps, and their widths as shared by the nodes (k, 2).
+
+    Values at the nodes of an element, times these, are its integral over an overlap.
+    """
+    most = columns.size + position.shape[0]
+    place, width = np.empty((most, 2), np.int64), np.empty((most, 2))
+    element, column, k = 0, 0, 0
+    while element < position.shape[0] - 1 and column < columns.size - 1:
+        x0, x1 = position[element, 0], position[element + 1, 0]
+        left = max(x0, columns[column])
+        right = min(x1, columns[column + 1])
+        if right > left:
+            share = (0.5 * (left + right) - x0) / (x1 - x0)
+            place[k, 0], place[k, 1] = element, column
+            width[k, 0], width[k, 1] = (right - left) * (1.0 - share), (right - left) * share
+            k += 1
+        if x1 <= columns[column + 1]:
+            element += 1
+        else:
+            column += 1
+    return place[:k], width[:k]
+
+
+@numba.njit(cache=True, error_model='numpy')
+def column_velocity(columns, position, velocity, place, width):
+    """Return the column averages of Y_t = v_y - Y_x v_x, the rise of the wall at fixed x.
+
+    ``place`` and ``width`` are those of `overlaps`.
+    """
+    w = np.empty(columns.size - 1)
+    for column in range(w.size):
+        w[column] = 0.0
+    for k in range(place.shape[0]):
+        i, column = place[k, 0], place[k, 1]
+        slope = ((position[i + 1, 1] - position[i, 1])
+                 / (position[i + 1, 0] - position[i, 0]))
+        w[column] += (width[k, 0] * (velocity[i, 1] - slope * velocity[i, 0])
+                      + width[k, 1] * (velocity[i + 1, 1] - slope * velocity[i + 1, 0]))
+    for column in range(w.size):
+        w[column] /= columns[column + 1] - columns[column]
+    return w
+
+
+@numba.njit(cache=True, error_model='numpy')
+def add_nodal_force(position, jump, place, width, force):
+    """Add to ``force`` (n + 1, 2) that of column pressure jumps, normal to the elements."""
+    for k in range(place.shape[0]):
+        i, column = place[k, 0], place[k, 1]
+        slope = ((position[i + 1, 1] - position[i, 1])
+                 / (position[i + 1, 0] - position[i, 0]))
+        start, end = jump[column] * width[k, 0], jump[column] * width[k, 1]
+        force[i, 0] -= slope * start
+        force[i, 1] += start
+        force[i + 1, 0] -= slope * end
+        force[i + 1, 1] += end
+
+
+@numba.njit(cache=True, error_model='numpy')
+def add_load(columns, position, velocity, jump, reference, resistance, uniform, force):
+    """Add to ``force`` (n + 1, 2) that of a `Load` whose columns moved with ``reference``."""
+    place, width = overlaps(columns, position)
+    w = column_velocity(columns, position, velocity, place, width)
+    total = np.empty(jump.size)
+    for i in range(jump.size):
+        w[i] -= reference[i]
+        total[i] = jump[i] + uniform
+    for j in range(jump.size):
+        for i in range(jump.size):
+            total[i] -= resistance[i, j] * w[j]
+    add_nodal_force(position, total, place, width, force)
+
+
+@numba.njit(cache=True, error_model='numpy')
+def wall(columns, position, velocity):
+    """Return the heights at the column faces, the edges' beyond them, and column velocities."""
+    height = np.empty(columns.size)
+    element, last = 0, position.shape[0] - 2
+    for i in range(columns.size):
+        while element < last and position[element + 1, 0] < columns[i]:
+            element += 1
+        x0, x1 = position[element, 0], position[element + 1, 0]
+        share = min(max((columns[i] - x0) / (x1 - x0), 0.0), 1.0)
+        height[i] = position[element, 1] + share * (position[element + 1, 1]
+                                                    - position[element, 1])
+    place, width = overlaps(columns, position)
+    return height, column_velocity(columns, position, velocity, place, width)
+
+
+@numba.njit(cache=True)
+def coasting_velocity(columns, position, velocity, position_before, velocity_before):
+    """Return the column velocities (4 w_n - w_n-1) / 3 of a BDF2 step without acceleration."""
+    w = column_velocity(columns, position, velocity, *overlaps(columns, position))
+    before = column_velocity(columns, position_before, velocity_before,
+                             *overlaps(columns, position_before))
+    for column in range(w.size):
+        w[column] = (4.0 * w[column] - before[column]) / 3.0
+    return w
+
+
+@numba.njit(cache=True)
+def _nodal_load(columns, position, velocity, jump, reference, resistance, uniform):
+    force = np.zeros(position.shape)
+    add_load(columns, position, velocity, jump, reference, resistance, uniform, force)
+    return force
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """Nodal forces of a flow and of accelerated axes, affine in the nodal velocities.
+
+    ``jump`` (columns,) acts if the wall moves with ``velocity`` (columns,).
+    """
+
+    fluid: Fluid
+    structure: Structure
+    jump: np.ndarray
+    velocity: np.ndarray
+    wall_pressure: float
+    onset: Onset | None = None
+
+    def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Return the nodal forces (nodes, 2) at these velocities."""
+        force = self.structure.spread(_nodal_load(
+            self.fluid.columns, self.structure.surface(position),
+            self.structure.surface(velocity), self.jump, self.velocity, self.fluid.resistance,
+            self.wall_pressure))
+        if self.has_frame_acceleration:
+            force -= self.structure.mass[:, None] * self.onset.frame_acceleration(
+                position, velocity)
+        return force
+
+    @property
+    def has_frame_acceleration(self) -> bool:
+        """Whether the axes are accelerated."""
+        return self.onset is not None and self.onset.is_accelerated

@@ -1,0 +1,86 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The passive camber of a wing, which targets of controllers are relative to.
+
+A steady wing has that of its rest state. To a wing that sheds, the rest state is one instant of a
+cycle: its passive camber is the mean over the next `AVERAGE` convective times. A wing whose trim
+ends within its quasi-steady part has no cycles yet.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from dewing_sim.errors import BadInput
+from dewing_sim.files import new_file
+from dewing_sim.rest.trim import QUASI_STEADY, cache_folder, fingerprint
+from dewing_sim.state import State
+from dewing_sim.wing import Wing
+
+LOOK, AVERAGE = 1.0, 10.0           # c/U; a shedding cycle takes about 1.7
+STEADY = 0.02                       # largest swing of a steady camber, relative
+SAMPLE = 5                          # steps
+
+
+def camber(wing: Wing, rest: State, progress=None) -> tuple[float, float]:
+    """Return chord average and maximum of the passive camber in m, cached on disk.
+
+    ``progress(done, total)`` is called if a shedding wing has to be marched on.
+    """
+    path = cache_folder() / f'passive-{fingerprint(wing)}.yaml'
+    found = _read(path)
+    if found is None:
+        found = measure(wing, rest, progress)
+        _keep(path, found)
+    return found
+
+
+def measure(wing: Wing, rest: State, progress=None) -> tuple[float, float]:
+    """Compute what `camber` returns."""
+    begin = _sample(wing, rest)
+    if wing.case.numerics.trim_time <= QUASI_STEADY:
+        return begin
+    glance, state = _march(wing, rest, LOOK)
+    swing = np.ptp([begin, *glance], axis=0) / begin
+    if swing.max() < STEADY:
+        return begin
+    later, _ = _march(wing, state, AVERAGE - LOOK, progress)
+    mean, largest = np.mean(glance + later, axis=0)
+    return float(mean), float(largest)
+
+
+def _march(wing: Wing, state: State, duration: float, progress=None):
+    """Return samples of the camber over ``duration`` (c/U) without disturbance, and the end."""
+    free = wing.operator(0.0)
+    total = round(duration * wing.scales.time / wing.dt)
+    samples = []
+    for step in range(1, total + 1):
+        state = State.after(0, state.v_squared, wing.couple(state, state.v_squared, 0.0, free))
+        if step % SAMPLE == 0 or step == total:
+            samples.append(_sample(wing, state))
+            if progress:
+                progress(step, total)
+    return samples, state
+
+
+def _sample(wing: Wing, state: State) -> tuple[float, float]:
+    outputs = wing.observe(state)
+    return float(outputs.camber_mean), float(outputs.camber_max)
+
+
+def _read(path: Path) -> tuple[float, float] | None:
+    try:
+        mean, largest = map(float, yaml.safe_load(path.read_text(encoding='utf-8')))
+    except (OSError, TypeError, ValueError, yaml.YAMLError):
+        return None                     # a broken cache is computed again
+    return mean, largest
+
+
+def _keep(path: Path, found: tuple[float, float]) -> None:
+    """Write atomically; a full disk is no failure."""
+    try:
+        with new_file(path, overwrite=True) as file:
+            file.write(yaml.safe_dump(list(found)).encode())
+    except (OSError, BadInput):
+        return

@@ -1,0 +1,125 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The rest state: a quasi-steady start, then a dynamic restart, as in the paper; kept on disk.
+
+The flow starts with the expected circulation.  Until `QUASI_STEADY` convective times the membrane
+is overdamped, so that it follows the developing load without ringing, and the far field learns the
+circulation; from there to ``trim_time`` the motion is the true one.
+"""
+
+import hashlib
+import os
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import yaml
+
+from dewing_sim.coupling.interface import Coupled
+from dewing_sim.errors import BadInput
+from dewing_sim.fluid.base import Fluid, Wall
+from dewing_sim.fluid.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
+from dewing_sim.machine import fingerprint as machine
+from dewing_sim.parameters import Case, to_mapping
+from dewing_sim.rest import checkpoint
+from dewing_sim.scales import Scales
+from dewing_sim.state import State
+from dewing_sim.structure.dynamics.motion import Motion
+from dewing_sim.structure.dynamics.step import Operator, Structure
+
+QUASI_STEADY = 10.0                 # c/U
+PROGRESS_STEPS = 50                 # between calls of `progress`
+
+
+class Wing(Protocol):
+    """What trimming knows of a wing."""
+
+    dt: float
+    case: Case
+    scales: Scales
+    fluid: Fluid
+    membrane: Structure
+
+    def operator(self, damping: float) -> Operator:
+        """Return the membrane's iteration operator with the flow's added mass."""
+
+    def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
+               damping: float = 0.0) -> Coupled:
+        """Advance flow and membrane by one step."""
+
+
+def rest(wing: Wing, progress=None) -> State:
+    """Return the rest state of ``wing`` from the cache, or march to it and keep it."""
+    path = cache_folder() / f'rest-{fingerprint(wing)}.npz'
+    if path.is_file():
+        try:
+            return checkpoint.load(path)
+        except BadInput:
+            path.unlink(missing_ok=True)        # a broken cache is computed again
+    state = march(wing, progress)
+    _keep(path, state, wing)
+    return state
+
+
+def march(wing: Wing, progress=None) -> State:
+    """Compute the rest state; ``progress(done, total)`` counts steps."""
+    dt = wing.dt / wing.scales.time
+    v_squared = wing.case.actuation.voltage**2
+    total = round(wing.case.numerics.trim_time / dt)
+    damping = 2.0 * first_frequency(wing)
+    overdamped, free = wing.operator(damping), wing.operator(0.0)
+    state = start(wing)
+    for step in range(total):
+        quasi_steady = step * dt < QUASI_STEADY
+        coupled = wing.couple(state, v_squared, 0.0, overdamped if quasi_steady else free,
+                              damping if quasi_steady else 0.0)
+        state = State.after(0, v_squared, coupled)
+        if step * dt < ADAPTATION_TIME:
+            state = replace(state, flow=adapt_circulation(wing.fluid, state.flow, dt))
+        if progress and (step + 1) % PROGRESS_STEPS == 0:
+            progress(step + 1, total)
+    return state
+
+
+def start(wing: Wing) -> State:
+    """Return potential flow past the flat membrane."""
+    flow_section = wing.case.flow
+    wall = Wall.flat(wing.fluid.columns)
+    circulation = starting_circulation(flow_section.angle_of_attack, 0.0)
+    return State(0, wing.case.actuation.voltage**2, wing.fluid.rest(wall, circulation),
+                 Motion.at_rest(wing.membrane.rest_position))
+
+
+def first_frequency(wing: Wing) -> float:
+    """Return the first angular frequency in vacuo, pi sqrt(T/m) / c, in U/c."""
+    membrane = wing.membrane
+    tension = membrane.rest_tension(wing.case.actuation.voltage**2)
+    return np.pi * float(np.sqrt(tension / membrane.mass.sum()))
+
+
+def fingerprint(wing: Wing) -> str:
+    """Return a hash of all that the rest state depends on: the case and the solver's sources."""
+    case = to_mapping(wing.case)
+    del case['disturbance'], case['gust'], case['rigid_motion'], case['actuation']['voltage_limit']
+    digest = hashlib.sha256(yaml.safe_dump(case).encode())
+    digest.update(machine.fingerprint(type(wing).__module__).encode())
+    return digest.hexdigest()[:24]
+
+
+def cache_folder() -> Path:
+    """Return the folder of cached states: $XDG_CACHE_HOME/dewing, else ~/.cache/dewing."""
+    return Path(os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache') / 'dewing'
+
+
+def _keep(path: Path, state: State, wing: Wing) -> None:
+    """Write atomically, so that two processes may trim at once; a full disk is no failure."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+            draft = Path(folder) / path.name
+            checkpoint.save(draft, state, wing.case)
+            draft.replace(path)
+    except OSError:
+        return

@@ -1,0 +1,38 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a node says of itself on ``/diagnostics``: a level, a sentence and some numbers."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from dewing_sim.ros import messages, qos
+
+
+class Status:
+    """Level and sentence in force; published when they change and whenever `report` is called.
+
+    ``values()`` gives the numbers that go with them.
+    """
+
+    def __init__(self, node, sentence: str, values: Callable[[], Mapping[str, Any]]):
+        """Advertise ``/diagnostics`` on ``node``."""
+        self._node, self._values = node, values
+        self._publisher = node.create_publisher(messages.DiagnosticArray, '/diagnostics',
+                                                qos.EVENTS)
+        self.level, self.sentence = messages.OK, sentence
+
+    def set(self, level: bytes, sentence: str) -> None:
+        """Publish level and sentence if either is new; warnings and errors are logged too."""
+        if (level, sentence) == (self.level, self.sentence):
+            return
+        self.level, self.sentence = level, sentence
+        self.report()
+        if level != messages.OK:
+            self._node.get_logger().warning(sentence)
+
+    def report(self) -> None:
+        """Publish what is in force."""
+        stamp = self._node.get_clock().now().to_msg()
+        qos.publish(self._publisher, messages.diagnostics(
+            self._node.get_fully_qualified_name(), self.level, self.sentence, self._values(),
+            stamp))

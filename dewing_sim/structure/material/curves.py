@@ -1,0 +1,116 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The curves that describe an elastomer and the membrane made of it, in SI units."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from dewing_sim import parameters
+from dewing_sim.structure import elements
+from dewing_sim.structure.material import limits
+from dewing_sim.structure.material.elastomer import Elastomer, diagonal
+from dewing_sim.structure.membrane import Membrane
+from dewing_sim.structure.sheet import Sheet
+from dewing_sim.structure.solid.pins import LOWER, MIDDLE
+from dewing_sim.structure.solid.solid import Solid
+
+POINTS = 200
+VOLTAGES = 11
+STRUCTURES = {'membrane': {'element': 'membrane'},
+              'solid': {'element': 'solid', 'support': LOWER},
+              'solid_middle': {'element': 'solid', 'support': MIDDLE}}
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What `of_section` found; arrays of equal length belong together."""
+
+    stretch: np.ndarray
+    stress: dict[str, np.ndarray]       # mode -> passive Cauchy stress along the stretch, Pa
+    voltage: np.ndarray                 # V, up to the loss of tension
+    tension: np.ndarray                 # N/m, of the flat membrane
+    slack_voltage: float
+    free_stretch: np.ndarray            # equal biaxial, no load
+    free_voltage: np.ndarray
+    pull_in: limits.PullIn | None       # None if the Gent limit comes first
+    thickness: float                    # before prestretch, m
+    camber_voltage: np.ndarray
+    camber: dict[str, np.ndarray]       # structure -> largest static deflection in chords
+
+    def metrics(self) -> dict[str, float]:
+        """Return the numbers of the curves; those of a pull-in only if there is one."""
+        found = {'tension': float(self.tension[0]), 'slack_voltage': self.slack_voltage}
+        if self.pull_in:
+            found |= {'pull_in_stretch': self.pull_in.stretch,
+                      'pull_in_voltage': self.pull_in.field * self.thickness}
+            if np.isfinite(self.pull_in.snapped_stretch):
+                found['snapped_stretch'] = self.pull_in.snapped_stretch
+        for name, camber in self.camber.items():
+            found[f'camber_{name}_passive'] = float(camber[0])
+            found[f'camber_{name}_highest'] = float(camber[-1])
+        found['highest_voltage'] = float(self.camber_voltage[-1])
+        for name in ('solid', 'solid_middle'):
+            difference = self.camber[name] / self.camber['membrane'] - 1.0
+            found[f'largest_difference_{name}'] = float(np.abs(difference).max())
+        return found
+
+
+def of_section(section: parameters.Membrane, pressure: float, voltage_limit: float) -> Curves:
+    """Return the curves of a membrane under a uniform ``pressure`` (Pa) up to ``voltage_limit``.
+
+    The viscous branch, which statics do not see, is left out.
+    """
+    section = parameters.replace(section, {'viscous_share': 0.0})
+    sheet = Sheet.from_parameters(section)
+    elastomer = sheet.elastomer
+    slack = float(np.sqrt(sheet.loss_of_tension_v_squared(section.prestretch)))
+    voltage = np.linspace(0.0, slack, POINTS)
+    stretch = np.linspace(1.0, 0.95 * _locking(elastomer), POINTS)
+    free = np.geomspace(1.0, 0.999 * limits.locking_stretch(
+        elastomer, lambda s: 2.0 * s * s + s ** -4), POINTS)
+    camber_voltage = np.linspace(0.0, min(voltage_limit, 0.95 * slack), VOLTAGES)
+    return Curves(
+        stretch, _stresses(elastomer, stretch), voltage,
+        np.array([sheet.respond([section.prestretch], v * v).tension[0] for v in voltage]), slack,
+        free, limits.equibiaxial_field(elastomer, free) * section.initial_thickness,
+        _pull_in(elastomer), section.initial_thickness, camber_voltage,
+        {name: cambers(elements.make(parameters.replace(section, changes)), pressure,
+                       camber_voltage) for name, changes in STRUCTURES.items()})
+
+
+def cambers(structure: Membrane | Solid, pressure: float, voltage: np.ndarray) -> np.ndarray:
+    """Return the largest static deflections in chords at the voltages (n,)."""
+    heights = [structure.surface(structure.equilibrium(pressure, v * v))[:, 1].max()
+               for v in voltage]
+    return np.array(heights) / structure.chord
+
+
+def _pull_in(elastomer: Elastomer) -> limits.PullIn | None:
+    try:
+        return limits.equibiaxial_pull_in(elastomer)
+    except limits.BadInput:
+        return None
+
+
+def _locking(elastomer: Elastomer) -> float:
+    return min(limits.locking_stretch(elastomer, i1) for i1 in (
+        lambda s: 2.0 * s * s + s ** -4, lambda s: s * s + s ** -2 + 1.0))
+
+
+def _stresses(elastomer: Elastomer, stretch: np.ndarray) -> dict[str, np.ndarray]:
+    """Return stresses along the stretch of sheets with free faces, by mode."""
+    lateral = {'uniaxial': stretch ** -0.5, 'plane strain': np.ones_like(stretch),
+               'equibiaxial': stretch}
+    return {mode: np.array([_stress(elastomer, l1, l2) for l1, l2 in zip(stretch, across)])
+            for mode, across in lateral.items()}
+
+
+def _stress(elastomer: Elastomer, l1: float, l2: float) -> float:
+    def principal(l3):
+        return np.diag(elastomer.cauchy_stress(diagonal((l1, l2, l3))))
+    volume = l1 * l2
+    l3 = brentq(lambda thickness: principal(thickness)[2],       # tension lets it swell
+                (1.0 - 1.0e-9) / volume, 1.5 / volume, xtol=1e-15)
+    return float(principal(l3)[0])

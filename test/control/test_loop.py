@@ -1,0 +1,172 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Frequency domain and discretisation against closed forms and python-control."""
+
+import numpy as np
+import pytest
+from identified_wing import design_model, identity, reduced_model
+
+from dewing_control.law.pid import Pid
+from dewing_control.law.registry import law
+from dewing_control.model.design import Design, load
+from dewing_control.model.loop import Compensator, Loop, closed_matrix, sensitivity_at
+from dewing_control.settings import ControllerSettings, PidGains
+from dewing_sim import parameters, reduced
+from dewing_sim.errors import BadInput
+
+control = pytest.importorskip('control')
+KINDS = ('pid', 'periodic', 'lqg')
+
+
+def settings(kind='pid', **changes):
+    changes = {name.replace('__', '.'): value for name, value in changes.items()}
+    return parameters.load('controller', ControllerSettings, {'kind': kind, **changes})
+
+
+def pid(kp, ki, kd=0.0, derivative_filter=0.0, dt=1.0e-4):
+    gains = PidGains(kp, ki, kd, derivative_filter, 1.0e-3)
+    return Pid(gains, 'camber_mean', 1.1, 2.0, 1.0, 1.0, 1.0, dt)
+
+
+def test_pid_is_the_backward_difference_of_python_control():
+    """Substitute s = (z - 1)/(T z) in kp + ki/s + kd s/(Tf s + 1), built by python-control."""
+    kp, ki, kd, tf, dt = 2.5, 9.7e3, 0.016, 1.15e-4, 1.0e-4
+    continuous = (kp + control.tf([ki], [1.0, 0.0]) + control.tf([kd, 0.0], [tf, 1.0]))
+    expected = control.sample_system(continuous, dt, method='backward_diff')
+    ours = pid(kp, ki, kd, tf, dt).compensator()
+    frequency = np.geomspace(1.0, 4.9e3, 60)
+    reference = np.array([expected(np.exp(2j * np.pi * f * dt)) for f in frequency])
+    np.testing.assert_allclose(ours.response(frequency, dt), reference, rtol=1.0e-9)
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_closed_loop_and_margins_agree_with_python_control(kind):
+    model = design_model()
+    compensator = law(settings(kind), identity(), model).compensator()
+    ours = Loop.of(model, compensator)
+    plant = control.ss(model.a, model.b[:, None], model.c[None], 0.0, model.dt)
+    series = plant * control.ss(compensator.a, compensator.b[:, None], compensator.c[None],
+                                compensator.d, model.dt)
+    poles = control.feedback(series, 1.0).poles()
+    assert np.abs(poles).max() == pytest.approx(np.abs(ours.poles).max(), abs=1.0e-6)
+    points = np.array([3.0, 33.0, 333.0])
+    expected = series(np.exp(2j * np.pi * points * model.dt))
+    measured = model.response(points) * compensator.response(points, model.dt)
+    np.testing.assert_allclose(measured, np.squeeze(expected), rtol=1.0e-6)
+
+
+def test_margins_of_a_pure_integrator():
+    """L = k/(z - 1) turns unstable at k = 2; Ms and phase margin from |1 + L| by hand."""
+    gain, dt = 0.5, 1.0e-3
+    frequency = np.geomspace(0.1, 500.0, 4000)
+    z = np.exp(2j * np.pi * frequency * dt)
+    loop = Loop(frequency, gain / (z - 1.0), np.ones_like(z), np.array([1.0 - gain]))
+    assert loop.stable
+    assert loop.gain_margin_db() == np.inf or loop.gain_margin_db() == pytest.approx(
+        20.0 * np.log10(2.0 / gain), abs=0.2)
+    crossing = 2.0 * np.arcsin(gain / 2.0)
+    assert loop.phase_margin_deg() == pytest.approx(90.0 - np.degrees(crossing) / 2.0, abs=0.1)
+    assert loop.peak == pytest.approx(2.0 / (2.0 - gain), rel=1.0e-3)
+
+
+def test_closed_matrix_is_the_loop_stepped_by_hand():
+    model, compensator = design_model(), pid(2.5, 9.7e3, 0.016, 1.15e-4).compensator()
+    matrix = closed_matrix(model, compensator)
+    start = np.random.default_rng(2).standard_normal(matrix.shape[0])
+    x, z = start[:model.order], start[model.order:]
+    error = -(model.c @ x)
+    w = compensator.c @ z + compensator.d * error
+    by_hand = np.concatenate([model.a @ x + model.b * w,
+                              compensator.a @ z + compensator.b * error])
+    np.testing.assert_allclose(matrix @ start, by_hand, rtol=1.0e-12, atol=1.0e-9)
+
+
+def mode(frequency=72.0, damping=0.02, gain=1.0, dt=2.0e-6) -> Design:
+    """Return one mode sampled so fast that it acts as in continuous time."""
+    from scipy import linalg
+    omega = 2.0 * np.pi * frequency
+    step = linalg.expm(dt * np.array([[0.0, 1.0, 0.0], [-omega**2, -2.0 * damping * omega,
+                                                        omega**2], [0.0, 0.0, 0.0]]))
+    return Design(step[:2, :2], step[:2, 2], np.array([gain, 0.0]), dt, 0.0)
+
+
+@pytest.mark.parametrize('kp', [0.0, 0.5, 2.0])
+def test_pi_on_a_lightly_damped_mode_is_stable_up_to_the_closed_form(kp):
+    """Ki G0 = 2 zeta w1 (1 + Kp G0): Routh's criterion on s^3 + 2 z w s^2 + w^2 (1 + k) s."""
+    damping, frequency, gain = 0.02, 72.0, 1.3
+    limit = 2.0 * damping * 2.0 * np.pi * frequency * (1.0 + kp * gain) / gain
+    model = mode(frequency, damping, gain)
+    below, above = (pid(kp, share * limit, dt=model.dt).compensator() for share in (0.97, 1.03))
+    assert Loop.of(model, below).stable
+    assert not Loop.of(model, above).stable
+
+
+def test_the_gains_as_printed_are_unstable_on_the_wing():
+    """Ki = 2.3e15, Kp = 4.0e11, Kd = 7.5e5 per metre of camber fail: Kd damps next to nothing."""
+    from dewing_control.tuning.tuning import printed_gains
+    model, wing = design_model(), identity()
+    printed = pid(**printed_gains(wing)).compensator()
+    assert not Loop.of(model, printed).stable
+    gains = printed_gains(wing)
+    assert Loop.of(model, pid(**{**gains, 'kd': 3000.0 * gains['kd']}).compensator()).stable
+
+
+@pytest.mark.parametrize('kind', ('periodic', 'lqg'))
+def test_known_frequency_is_rejected_entirely(kind):
+    model = design_model()
+    compensator = law(settings(kind), identity(), model).compensator()
+    assert Loop.of(model, compensator).stable
+    assert abs(sensitivity_at(model, compensator, 10.0)) < 1.0e-5
+    assert abs(sensitivity_at(model, compensator, 13.0)) > 1.0e-4
+
+
+def test_design_model_keeps_the_response_through_resampling_and_tension():
+    model = design_model()
+    points = np.array([5.0, 40.0, 72.0, 150.0])
+    assert design_model(5).static_gain == pytest.approx(model.static_gain, rel=1.0e-9)
+    assert design_model(5).dt == pytest.approx(5.0e-4)
+    np.testing.assert_allclose(model.at_tension(1.0).response(points), model.response(points),
+                               rtol=1.0e-6)
+    looser = model.at_tension(0.81)
+    assert looser.static_gain == pytest.approx(model.static_gain, rel=1.0e-6)
+    grid = np.linspace(40.0, 100.0, 2000)
+    peaks = [grid[np.abs(plant.response(grid)).argmax()] for plant in (looser, model)]
+    assert peaks[0] / peaks[1] == pytest.approx(0.9, abs=0.005)
+
+
+def test_fundamental_keeps_static_gain_frequency_and_damping():
+    fundamental = design_model().fundamental()
+    poles = np.log(np.linalg.eigvals(fundamental.a)) / fundamental.dt
+    assert abs(poles[0]) / (2.0 * np.pi) == pytest.approx(73.4, rel=1.0e-6)
+    assert -poles[0].real / abs(poles[0]) == pytest.approx(0.027, rel=1.0e-6)
+    assert fundamental.static_gain == pytest.approx(design_model().static_gain, rel=1.0e-9)
+
+
+def test_unusable_models_are_refused(tmp_path):
+    with pytest.raises(BadInput, match='model is empty'):
+        load('', 'camber_mean', 1.0e-4)
+    with pytest.raises(BadInput, match='no output tension'):
+        Design.of(reduced_model(), 'tension')
+    import dataclasses
+    model = reduced_model()
+    with pytest.raises(BadInput, match='unstable'):
+        Design.of(dataclasses.replace(model, A=1.2 * model.A), 'camber_mean')
+    with pytest.raises(BadInput, match='camber falls with V'):
+        Design.of(dataclasses.replace(model, C=-model.C), 'camber_mean')
+
+
+def test_a_model_is_sampled_at_the_control_period(tmp_path):
+    path = str(tmp_path / 'model.npz')
+    reduced.save(path, reduced_model())
+    for steps in (1, 3):
+        np.testing.assert_array_equal(load(path, 'camber_mean', steps * 1.0e-4).a,
+                                      design_model(steps).a)
+    for period in (5.0e-5, 1.5e-4):
+        with pytest.raises(BadInput, match=rf'control period, {period:g} s, is no multiple'):
+            load(path, 'camber_mean', period)
+
+
+def test_compensator_response_is_its_transfer_function():
+    compensator = Compensator(np.array([[0.5]]), np.array([2.0]), np.array([3.0]), 1.0)
+    z = np.exp(2j * np.pi * 0.1)
+    assert compensator.response(np.array([0.1]), 1.0)[0] == pytest.approx(6.0 / (z - 0.5) + 1.0)

@@ -1,0 +1,70 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every shipped YAML file loads into the schema of its kind, and every case is stepped."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from dewing_control.settings import ControllerSettings
+from dewing_sim import parameters
+from dewing_sim.parameters import Case
+from dewing_sim.plant import SCALARS, rollout
+from dewing_sim.settings import SimulatorSettings
+from dewing_sysid.settings import Settings
+
+CONFIG = Path(__file__).parents[2] / 'config'
+FILES = sorted(path.stem for path in CONFIG.glob('*.yaml'))
+SCHEMAS = {'controller': ControllerSettings, 'simulator': SimulatorSettings, 'sysid': Settings}
+CASES = [name for name in FILES if name not in SCHEMAS]
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_a_shipped_file_loads(name):
+    parameters.load(name, SCHEMAS.get(name, Case))
+
+
+def test_the_paper_s_cases_are_shipped():
+    assert {'paper', 'paper_alpha8', 'soft'} <= set(CASES)
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_a_shipped_file_is_in_ros_format_and_says_what_it_is(name):
+    text = (CONFIG / f'{name}.yaml').read_text()
+    assert text.startswith('# ')
+    assert list(yaml.safe_load(text)) == ['/**']
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_a_shipped_case_respects_its_voltage_limit(name):
+    case = parameters.load(name)
+    assert case.actuation.voltage <= case.actuation.voltage_limit
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_a_shipped_case_steps_on_its_own_grid(name, tmp_path, monkeypatch):
+    from dewing_sim.wing import Wing
+    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
+    wing = Wing(parameters.load(name, changes={'numerics.trim_time': 0.05}))
+    outputs = [outputs for _, outputs in rollout(wing, wing.rest(), lambda _: 1.0e4, 5)]
+    assert [instant.time for instant in outputs] == pytest.approx(wing.dt * np.arange(1, 6))
+    for instant in outputs:
+        assert np.isfinite([getattr(instant, scalar) for scalar in SCALARS]).all()
+        assert instant.v_squared == 1.0e4 and instant.tension > 0.0
+
+
+def test_the_shipped_controller_answers_the_paper_s_wing():
+    from dewing_control.trial.closed_loop import controller
+    from dewing_sim.identity import Identity
+    from dewing_sim.plant import Measurement
+    identity = Identity('wing', 1.0e-4, 2.0e-5, 3.0e-5, 1300.0**2, 1250.0**2, {}, '')
+    law = controller(parameters.load('controller', ControllerSettings), identity)
+    memory = law.start()
+    answers = []
+    for k in range(200):
+        memory, v_squared = law.step(
+            memory, Measurement(k * 1.0e-4, 2.0e-5, 3.0e-5, 0.39, 0.06, 0.0))
+        answers.append(v_squared)
+    assert answers[0] == 0.0 and 0.0 < answers[-1] <= 1250.0**2

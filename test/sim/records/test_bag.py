@@ -1,0 +1,60 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command that describes and draws bags."""
+
+import json
+
+import numpy as np
+import pytest
+
+from dewing_cli import main as cli
+from dewing_sim.records import bag
+from dewing_sim.records.bag import _types
+
+JOINTS, TEXT = 'sensor_msgs/msg/JointState', 'std_msgs/msg/String'
+IDENTITY = ('{plant: reduced, dt: 1.0e-4, camber_mean: 2.0e-5, camber_max: 3.0e-5, '
+            'v_squared_slack: 1.0e+6, v_squared_max: 1.0e+6, case: {}, version: test}')
+
+
+@pytest.fixture
+def path(tmp_path):
+    """Return a bag of 50 steps of which two are missing."""
+    types = _types()
+    header, time = types.types['std_msgs/msg/Header'], types.types['builtin_interfaces/msg/Time']
+    writer = bag.BagWriter(tmp_path / 'run.mcap')
+    writer.add_topic('/dewing/case', TEXT)
+    writer.add_topic('/dewing/measurement', JOINTS)
+    writer.write('/dewing/case', types.serialize_cdr(types.types[TEXT](IDENTITY), TEXT), 0, 0)
+    for step in [*range(20), *range(22, 51)]:
+        message = types.types[JOINTS](
+            header(time(0, step * 100_000), ''), ['camber_mean', 'v_squared'],
+            np.array([2.0e-5, 1.0e4 * step]), np.empty(0), np.empty(0))
+        writer.write('/dewing/measurement', types.serialize_cdr(message, JOINTS),
+                     step * 10_000_000, step)
+    writer.close()
+    return tmp_path / 'run.mcap'
+
+
+def test_info_counts_messages_and_missing_steps(path, tmp_path, capsys):
+    assert cli.main(['bag', 'info', str(path), '--json', str(tmp_path / 'info.json')]) == 0
+    found = json.loads((tmp_path / 'info.json').read_text())
+    assert found['topics']['/dewing/measurement'] == {'type': JOINTS, 'messages': 49}
+    assert found['simulated_s'] == pytest.approx(5.0e-3) and found['steps_missing'] == 2
+    assert found['wall_s'] == pytest.approx(0.5) and found['plant']['name'] == 'reduced'
+    assert '0.005 s of simulated time, 2 steps missing' in capsys.readouterr().out
+
+
+def test_plot_draws_beside_the_bag_and_writes_over_nothing(path, tmp_path, capsys):
+    assert cli.main(['bag', 'plot', str(path), '--json', str(tmp_path / 'plot.json')]) == 0
+    assert path.with_suffix('.png').read_bytes().startswith(b'\x89PNG')
+    assert json.loads((tmp_path / 'plot.json').read_text())['v_max'] == pytest.approx(500000**0.5)
+    assert cli.main(['bag', 'plot', str(path)]) == 2
+    assert 'exists; --force writes over it' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('arguments, sentence', [
+    (['draw', 'run.mcap'], 'ACTION draw is not known; one of info, plot'),
+    (['info', 'none.mcap'], 'none.mcap: cannot be read')])
+def test_what_cannot_be_done_is_said(arguments, sentence, capsys):
+    assert cli.main(['bag', *arguments]) == 2
+    assert sentence in capsys.readouterr().err

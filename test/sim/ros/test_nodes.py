@@ -1,0 +1,134 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Simulator and controller as processes over DDS: lock-step, faults, ends."""
+
+import dataclasses
+import signal
+
+import numpy as np
+import pytest
+from reduced_wing import first_mode
+from ros_processes import (
+    PATIENCE,
+    graph,
+    kill,
+    last_status,
+    offline,
+    simulated_time,
+    wait_until,
+)
+
+from dewing_sim import reduced
+from dewing_sim.records import bag
+
+
+def run_closed_loop(folder, steps):
+    """Run the loop of three processes to its end and return its bag."""
+    with graph(folder) as ros:
+        path = ros.recorder()
+        simulator = ros.simulator(duration=1.0e-4 * steps, subscribers=2)
+        ros.start('controller')
+        assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
+    return path
+
+
+def assert_identical_to_offline(path, steps):
+    recorded, expected = bag.series(path, '/dewing/measurement'), offline(steps)
+    for name, values in expected.items():
+        assert np.array_equal(recorded[name], values), name
+    commands = bag.series(path, '/dewing/command')
+    assert np.array_equal(commands['v_squared'][:steps], expected['v_squared'][1:])
+    status, values = last_status(path)
+    assert int(values['steps']) == steps and status.message.startswith('finished at')
+    assert values['rejected'] == '0'
+    return values
+
+
+def test_loop_over_dds_is_bit_identical_to_the_loop_offline(tmp_path):
+    assert_identical_to_offline(run_closed_loop(tmp_path, 2000), 2000)
+
+
+@pytest.mark.slow
+def test_ten_thousand_steps_lose_and_mismatch_none(tmp_path):
+    values = assert_identical_to_offline(run_closed_loop(tmp_path, 10000), 10000)
+    assert int(values['stale']) <= int(values['resent'])      # answers to repeated questions only
+
+
+def test_a_killed_controller_is_reported_and_the_state_saved(tmp_path):
+    with graph(tmp_path) as ros:
+        path = ros.recorder()
+        simulator = ros.simulator(subscribers=2, command_timeout=0.5, hold_timeout=1.0,
+                                  delivery_timeout=5.0)
+        controller = ros.start('controller')
+        wait_until(lambda: simulated_time(path) > 0.02)
+        kill(controller)
+        assert simulator.wait(PATIENCE) == 1
+    sentences = [status.message for _, _, message in bag.read(path, '/diagnostics')
+                 for status in message.status if status.name == '/dewing/simulator']
+    assert any('no valid command for' in text and 'are held' in text for text in sentences)
+    assert 'state saved in dewing_state.npz' in sentences[-1]
+    assert 'stopped; state saved in dewing_state.npz' in ros.said('simulator')
+    recorded = bag.series(path, '/dewing/measurement')
+    state = first_mode().load(tmp_path / 'dewing_state.npz')
+    assert state.step * 1.0e-4 == pytest.approx(recorded['time'][-1])
+
+
+def test_a_restarted_controller_carries_on_without_a_bump(tmp_path):
+    with graph(tmp_path) as ros:
+        path = ros.recorder()
+        simulator = ros.simulator(subscribers=2, duration=0.3, delivery_timeout=5.0)
+        controller = ros.start('controller')
+        wait_until(lambda: simulated_time(path) > 0.06)
+        kill(controller)
+        ros.start('controller')
+        assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
+    run = bag.series(path, '/dewing/measurement')
+    assert len(run['time']) == 3001
+    jumps = np.abs(np.diff(run['v_squared'][run['time'] > 0.06]))
+    assert np.max(jumps) < 0.012 * 2.0 * 1300.0**2      # kd times the rate of the reference
+    assert run['camber_mean'][-1] == pytest.approx(1.10 * 26.0e-6, rel=0.005)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_signals_end_every_process_cleanly(tmp_path, number):
+    with graph(tmp_path) as ros:
+        path = ros.recorder()
+        ros.simulator(subscribers=2)
+        ros.start('controller')
+        wait_until(lambda: simulated_time(path) > 0.01)
+        for process in reversed(ros.processes):
+            process.send_signal(number)
+            assert process.wait(PATIENCE) == 0
+        assert 'Traceback' not in ros.said('simulator') + ros.said('controller')
+    assert last_status(path)[0].message.startswith('interrupted at')
+
+
+@pytest.mark.parametrize('name, settings, sentence', [
+    ('simulator', {'flow.sped': 1.0}, 'flow.sped is not a parameter'),
+    ('simulator', {'flow.speed': 1}, 'flow.speed = 1 is not a floating-point number'),
+    ('simulator', {'run.duration': -1.0}, 'run.duration = -1.0 is out of range'),
+    ('simulator', {'case': 'papre'}, "'papre' is not a shipped configuration"),
+    ('simulator', {'run.plant': 'reduced', 'model': 'none.npz'}, 'none.npz: cannot be read'),
+    ('simulator', {'actuation.voltage_limit': 2000.0}, 'the membrane loses its tension at 13'),
+    ('controller', {'pid.kp': -1.0}, 'pid.kp = -1.0 is out of range'),
+    ('recorder', {'output': '.'}, '. is a folder, not a file'),
+])
+def test_bad_parameters_end_with_status_2_and_one_sentence(tmp_path, name, settings, sentence):
+    with graph(tmp_path) as ros:
+        assert ros.start(name, settings).wait(PATIENCE) == 2
+        said = ros.said(name).strip()
+    assert sentence in said and said.count('\n') == 0
+
+
+def test_a_diverging_run_ends_with_its_last_good_state_and_no_nan(tmp_path):
+    with graph(tmp_path) as ros:
+        plant = first_mode()
+        reduced.save(ros.model, dataclasses.replace(
+            plant, A=1.5 * plant.A, operating_v_squared=1.0e5))
+        path = ros.recorder()
+        simulator = ros.simulator(subscribers=1, mode='free')
+        assert simulator.wait(PATIENCE) == 1
+        assert 'reduced model: the state is not finite' in ros.said('simulator')
+    run = bag.series(path, '/dewing/measurement')
+    assert all(np.all(np.isfinite(values)) for values in run.values())
+    assert first_mode().load(tmp_path / 'dewing_state.npz').step == len(run['time']) - 1

@@ -1,0 +1,147 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The coupled wing: targets of the paper's case, restart bit for bit, refusals."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput, Slack
+from dewing_sim.plant import SCALARS, rollout
+from dewing_sim.rest import checkpoint, trim
+from dewing_sim.wing import Wing
+
+FAST = {'numerics.grid': 'fast', 'numerics.trim_time': 2.0, 'numerics.time_step': 2.0e-4}
+
+
+@pytest.fixture(scope='module')
+def fast() -> Wing:
+    return Wing(parameters.load('paper', changes=FAST))
+
+
+@pytest.fixture(scope='module')
+def fast_rest(fast):
+    return trim.march(fast)
+
+
+@pytest.fixture(scope='module')
+def paper() -> Wing:
+    return Wing(parameters.load('paper'))
+
+
+def test_paper_wing_at_rest_meets_its_targets(paper):
+    outputs = paper.observe(paper.rest())
+    assert outputs.time == 0.0
+    assert outputs.cl == pytest.approx(0.395, rel=0.015)
+    assert outputs.camber_max / paper.reference_deflection == pytest.approx(0.325, rel=0.04)
+    assert outputs.camber_max_position == pytest.approx(0.394, abs=0.015)
+    assert outputs.tension == pytest.approx(1.2121, rel=1.0e-3)
+    assert 25.0e-6 < outputs.camber_max < 29.0e-6
+
+
+def test_disturbance_moves_the_camber_as_the_paper_says():
+    case = parameters.load('paper', changes={'disturbance.pressure': 0.015})
+    wing = Wing(case)
+    rest = wing.rest()
+    passive = wing.observe(rest).camber_mean
+    camber = [outputs.camber_mean for _, outputs in rollout(wing, rest, lambda _: 0.0, 2000)]
+    relative = np.array(camber[1000:]) / passive - 1.0      # the second period of 10 Hz
+    assert relative.mean() == pytest.approx(-0.050, abs=0.005)
+    assert 0.5 * np.ptp(relative) == pytest.approx(0.050, abs=0.005)
+
+
+def test_voltage_lowers_the_tension_and_raises_mean_camber_and_lift(fast, fast_rest):
+    def mean(name, v_squared):          # over three periods of the first mode, 72 Hz
+        return np.mean([getattr(outputs, name)
+                        for _, outputs in rollout(fast, fast_rest, lambda _: v_squared, 210)])
+    assert mean('tension', 500.0**2) < mean('tension', 0.0)
+    assert mean('camber_mean', 500.0**2) > 1.1 * mean('camber_mean', 0.0)
+    assert mean('cl', 500.0**2) > mean('cl', 0.0)
+
+
+RESTART = """
+import sys
+from dewing_sim import checkpoint
+from dewing_sim.wing import Wing
+path, out = sys.argv[1:]
+wing, state = Wing(checkpoint.load_case(path)), checkpoint.load(path)
+for _ in range(20):
+    state = wing.step(state, 90000.0)
+checkpoint.save(out, state, wing.case)
+"""
+
+
+def test_twenty_steps_saved_and_continued_elsewhere_equal_forty_bit_for_bit(
+        fast, fast_rest, tmp_path):
+    states = [state for state, _ in rollout(fast, fast_rest, lambda _: 90000.0, 40)]
+    checkpoint.save(tmp_path / 'half.npz', states[19], fast.case)
+    subprocess.run([sys.executable, '-c', RESTART, tmp_path / 'half.npz', tmp_path / 'end.npz'],
+                   check=True, cwd=tmp_path.parent)
+    continued = checkpoint.load(tmp_path / 'end.npz')
+    assert continued.step == states[-1].step == 40
+    for part in ('flow', 'motion'):
+        ours, theirs = vars(getattr(states[-1], part)), vars(getattr(continued, part))
+        for name, value in ours.items():
+            assert np.array_equal(value, theirs[name]), (part, name)
+    direct, restarted = fast.observe(states[-1]), fast.observe(continued)
+    assert all(getattr(direct, name) == getattr(restarted, name) for name in SCALARS)
+
+
+def test_rest_is_cached_for_its_case_and_recomputed_when_the_cache_is_broken(
+        tmp_path, monkeypatch):
+    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
+    wing = Wing(parameters.load('paper', changes={**FAST, 'numerics.trim_time': 0.2}))
+    calls = []
+    first = wing.rest(lambda done, total: calls.append(done))
+    path, = (tmp_path / 'dewing').glob('rest-*.npz')
+    again = Wing(wing.case).rest(lambda done, total: calls.append(-done))
+    assert all(done > 0 for done in calls)
+    assert np.array_equal(first.flow.u, again.flow.u)
+    path.write_bytes(b'broken')
+    assert np.array_equal(wing.rest().flow.u, first.flow.u)
+    other = Wing(parameters.replace(wing.case, {'actuation.voltage': 300.0}))
+    assert trim.fingerprint(other) != trim.fingerprint(wing)
+    undisturbed = Wing(parameters.replace(wing.case, {'disturbance.pressure': 0.015}))
+    assert trim.fingerprint(undisturbed) == trim.fingerprint(wing)
+
+
+@pytest.mark.parametrize('v_squared', [-1.0, np.nan, np.inf])
+def test_unusable_commands_are_refused(fast, fast_rest, v_squared):
+    with pytest.raises(BadInput, match='v_squared'):
+        fast.step(fast_rest, v_squared)
+
+
+def test_voltages_beyond_the_loss_of_tension_are_refused():
+    for key in ('actuation.voltage', 'actuation.voltage_limit'):
+        with pytest.raises(BadInput, match=rf'{key} = 1400 V.*loses its tension at 1300 V'):
+            Wing(parameters.load('paper', changes={key: 1400.0}))
+
+
+def test_a_membrane_gone_slack_stops_with_the_last_good_state(fast, fast_rest):
+    with pytest.raises(Slack, match='slack membrane') as caught:
+        list(rollout(fast, fast_rest, lambda _: 1500.0**2, 100))
+    assert caught.value.state.step < 100
+
+
+def test_a_file_that_is_no_state_is_refused(tmp_path):
+    path = tmp_path / 'junk.npz'
+    with pytest.raises(BadInput, match='no such file'):
+        checkpoint.load(path)
+    np.savez(path, a=1)
+    with pytest.raises(BadInput, match='not a saved wing state'):
+        checkpoint.load(path)
+
+
+def test_rest_states_depend_on_every_module_that_computes_them():
+    code = ('import sys, dewing_sim.rest.trim, dewing_sim.rest.passive\n'
+            'names = (name.split(".") for name in sys.modules)\n'
+            'print(*{name[1] for name in names if name[0] == "dewing_sim" and name[1:]})')
+    loaded = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                            check=True).stdout.split()
+    # Files, checks and how numba compiles; `fluid` and `structure` are taken as a whole.
+    others = {'checkpoint', 'compilation', 'errors', 'files', 'fluid', 'parameters', 'plant',
+              'schema', 'structure'}
+    assert set(loaded) - others == set(trim.SOLVER)

@@ -1,0 +1,105 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Simulator, controller and recorder of a linear wing as processes over DDS, for the tests."""
+
+import os
+import signal
+import time
+from contextlib import contextmanager
+
+import numpy as np
+from reduced_wing import first_mode
+
+from dewing_control.settings import ControllerSettings
+from dewing_control.trial.closed_loop import closed_loop, controller
+from dewing_sim import parameters, reduced
+from dewing_sim.identity import Identity
+from dewing_sim.plant import Measurement
+from dewing_sim.records import bag
+from dewing_sim.ros import harness
+
+MODULES = dict(simulator='dewing_sim.ros.node', controller='dewing_control.node',
+               recorder='dewing_sim.ros.recorder')
+PATIENCE = 300.0            # s, for a machine that is busy with other things
+
+
+class Graph:
+    """Starts the executables in one ROS domain, in ``folder``, and stops what is left."""
+
+    def __init__(self, domain, folder):
+        self.domain, self.folder, self.processes = domain, folder, []
+        folder.mkdir(exist_ok=True)
+        self.model = folder / 'model.npz'
+        reduced.save(self.model, first_mode(disturbance=0.05))
+
+    def start(self, name, settings=None, **options):
+        log = open(self.folder / f'{name}.txt', 'a')
+        process = harness.start_node(
+            MODULES[name], settings or {}, harness.environment(self.domain, str(self.folder)),
+            cwd=self.folder, stdout=log, stderr=log, **options)
+        self.processes.append(process)
+        return process
+
+    def simulator(self, **run):
+        settings = {'run.plant': 'reduced', 'model': self.model}
+        return self.start('simulator', settings | {f'run.{key}': run[key] for key in run})
+
+    def recorder(self):
+        self.start('recorder', {'output': self.folder / 'run.mcap'})
+        return self.folder / 'run.mcap'
+
+    def said(self, name):
+        return (self.folder / f'{name}.txt').read_text()
+
+    def stop(self):
+        for process in self.processes:
+            harness.stop_node(process, PATIENCE)
+
+
+@contextmanager
+def graph(folder):
+    with harness.reserved_domain() as domain:
+        result = Graph(domain, folder)
+        try:
+            yield result
+        finally:
+            result.stop()
+
+
+def wait_until(condition):
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, 'the condition did not come true in time'
+        time.sleep(0.05)
+
+
+def kill(process):
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def simulated_time(path):
+    """Return the last stamp in a growing bag, 0 before it has any."""
+    stamps = [message.header.stamp for _, _, message in bag.read(path, '/dewing/measurement')
+              ] if path.exists() else []
+    return stamps[-1].sec + 1.0e-9 * stamps[-1].nanosec if stamps else 0.0
+
+
+def last_status(path, name='/dewing/simulator'):
+    """Return the last diagnostic of a node in a bag and its values."""
+    statuses = [status for _, _, message in bag.read(path, '/diagnostics')
+                for status in message.status if status.name == name]
+    return statuses[-1], {item.key: item.value for item in statuses[-1].values}
+
+
+def offline(steps, changes=None):
+    """Return the measurements of the same loop in this process, columns by name.
+
+    ``changes`` are those of the controller's settings.
+    """
+    plant = first_mode(disturbance=0.05)
+    identity = Identity.of('reduced', plant, plant.rest(), plant.v_squared_max, {})
+    law = controller(parameters.load('controller', ControllerSettings, changes), identity)
+    rows = [Measurement.of(plant.observe(plant.rest()))]
+    rows += [Measurement.of(o) for _, o in closed_loop(plant, plant.rest(), law, steps)]
+    return dict(zip(Measurement._fields, np.array(rows).T))
