@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 BIN = Path(sys.executable).parent
-TIMES = re.compile(r'seconds|rtf|ms_per_step|compute|overhead|idle|^version$')
+TIMES = re.compile(r'seconds|rtf|ms_per_step|compute|overhead|idle|fingerprint|^version$')
 SHORT = ('--set', 'numerics.trim_time=2.0')
 REALTIME = ('--engine', 'conformal', '--grid', 'realtime', '--dt', '5e-4', *SHORT)
 FAST = ('--engine', 'finite_volume', '--grid', 'fast', *SHORT)

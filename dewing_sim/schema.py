@@ -10,31 +10,40 @@ import dataclasses
 from typing import Any, Iterator, Mapping, TypeVar
 
 from dewing_sim.errors import BadInput
+from dewing_sim.plugins import is_plugin
 
 Section = TypeVar('Section')
 
 
-def real(unit: str, meaning: str, low: float, high: float) -> Any:
-    """Declare a floating-point field with its unit, meaning and admissible range."""
-    return dataclasses.field(metadata=dict(
-        type=float, unit=unit, meaning=meaning, low=low, high=high))
+def real(unit: str, meaning: str, low: float, high: float, **more: Any) -> Any:
+    """Declare a floating-point field with its unit, meaning and admissible range.
+
+    Every declaration takes ``default``, the value where a file does not name the field, as files
+    of an earlier version cannot. Without it the field must be there.
+    """
+    return _field(float, unit, meaning, low=low, high=high, **more)
 
 
-def count(meaning: str, low: int, high: int) -> Any:
+def count(meaning: str, low: int, high: int, **more: Any) -> Any:
     """Declare a whole-number field with its meaning and admissible range."""
-    return dataclasses.field(metadata=dict(
-        type=int, unit='', meaning=meaning, low=low, high=high))
+    return _field(int, '', meaning, low=low, high=high, **more)
 
 
-def choice(meaning: str, *options: str) -> Any:
-    """Declare a field that takes one of a few words."""
-    return dataclasses.field(metadata=dict(
-        type=str, unit='', meaning=meaning, options=options))
+def choice(meaning: str, *options: str, **more: Any) -> Any:
+    """Declare a field that takes one of a few words.
+
+    With ``open=True`` it takes a part from outside too, ``package.module:Name``; see `plugins`.
+    """
+    return _field(str, '', meaning, options=options, **more)
 
 
-def text(meaning: str) -> Any:
+def text(meaning: str, **more: Any) -> Any:
     """Declare a free-text field, such as a path; it may be empty."""
-    return dataclasses.field(metadata=dict(type=str, unit='', meaning=meaning))
+    return _field(str, '', meaning, **more)
+
+
+def _field(kind: type, unit: str, meaning: str, **more: Any) -> Any:
+    return dataclasses.field(metadata=dict(type=kind, unit=unit, meaning=meaning, **more))
 
 
 def fields(schema: type, prefix: str = '') -> Iterator[tuple[str, dataclasses.Field]]:
@@ -59,7 +68,8 @@ def describe(field: dataclasses.Field) -> str:
     """Return meaning, unit and range of a field in one line, for descriptors and errors."""
     meta = field.metadata
     if 'options' in meta:
-        return f"{meta['meaning']}; one of {', '.join(meta['options'])}"
+        outside = ' or package.module:Name' if meta.get('open') else ''
+        return f"{meta['meaning']}; one of {', '.join(meta['options'])}{outside}"
     if 'low' not in meta:
         return meta['meaning']
     unit = f" [{meta['unit']}]" if meta['unit'] else ''
@@ -74,7 +84,8 @@ def check(name: str, field: dataclasses.Field, value: Any) -> Any:
         raise BadInput(f'{name} = {value!r} is not a {_TYPE_NAMES[wanted]}{hint}: '
                        f'{describe(field)}')
     if 'options' in field.metadata:
-        admissible = value in field.metadata['options']
+        admissible = value in field.metadata['options'] or (
+            field.metadata.get('open', False) and is_plugin(value))
     elif 'low' in field.metadata:
         admissible = field.metadata['low'] <= value <= field.metadata['high']
     else:
@@ -104,16 +115,27 @@ def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section
     values = {}
     for key, field in known.items():
         path = _join(name, key)
-        if key not in mapping:
+        if dataclasses.is_dataclass(field.type):
+            value = mapping[key] if key in mapping else _default_section(path, field)
+            values[key] = from_mapping(field.type, value, path)
+        elif key in mapping:
+            values[key] = check(path, field, mapping[key])
+        elif 'default' in field.metadata:
+            values[key] = field.metadata['default']
+        else:
             raise BadInput(f'{path} is missing{_missing_hint(field)}')
-        nested = dataclasses.is_dataclass(field.type)
-        values[key] = (from_mapping(field.type, mapping[key], path) if nested
-                       else check(path, field, mapping[key]))
     return schema(**values)
 
 
 def _join(prefix: str, key: Any) -> str:
     return f'{prefix}.{key}' if prefix else str(key)
+
+
+def _default_section(path: str, field: dataclasses.Field) -> dict:
+    """Return an empty section if all that is in it has a default; raise `BadInput` otherwise."""
+    if all('default' in leaf.metadata for _, leaf in fields(field.type)):
+        return {}
+    raise BadInput(f'{path} is missing{_missing_hint(field)}')
 
 
 def _missing_hint(field: dataclasses.Field) -> str:

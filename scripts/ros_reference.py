@@ -28,8 +28,9 @@ TYPES = {1: 'bool', 2: 'integer', 3: 'double', 4: 'string'}
 HEAD = """# ROS interface reference
 
 Written by `python scripts/ros_reference.py` from the running nodes;
-`test/project/test_ros_docs.py` compares it with them. [ROS](ros.md) explains what the interface means. Names are those in the
-default namespace and can be remapped; each node also has the parameter services of every ROS node.
+`test/project/test_ros_docs.py` compares it with them. [ROS](ros.md) explains what the interface
+means. Names are those in the default namespace and can be remapped; each node also has the
+parameter services of every ROS node.
 """
 
 

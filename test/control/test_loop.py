@@ -5,12 +5,12 @@
 import numpy as np
 import pytest
 from identified_wing import design_model, identity, reduced_model
+from loops import mode, pid
 
-from dewing_control.law.pid import Pid
 from dewing_control.law.registry import law
 from dewing_control.model.design import Design, load
 from dewing_control.model.loop import Compensator, Loop, closed_matrix, sensitivity_at
-from dewing_control.settings import ControllerSettings, PidGains
+from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 
@@ -21,11 +21,6 @@ KINDS = ('pid', 'periodic', 'lqg')
 def settings(kind='pid', **changes):
     changes = {name.replace('__', '.'): value for name, value in changes.items()}
     return parameters.load('controller', ControllerSettings, {'kind': kind, **changes})
-
-
-def pid(kp, ki, kd=0.0, derivative_filter=0.0, dt=1.0e-4):
-    gains = PidGains(kp, ki, kd, derivative_filter, 1.0e-3)
-    return Pid(gains, 'camber_mean', 1.1, 2.0, 1.0, 1.0, 1.0, dt)
 
 
 def test_pid_is_the_backward_difference_of_python_control():
@@ -79,15 +74,6 @@ def test_closed_matrix_is_the_loop_stepped_by_hand():
     by_hand = np.concatenate([model.a @ x + model.b * w,
                               compensator.a @ z + compensator.b * error])
     np.testing.assert_allclose(matrix @ start, by_hand, rtol=1.0e-12, atol=1.0e-9)
-
-
-def mode(frequency=72.0, damping=0.02, gain=1.0, dt=2.0e-6) -> Design:
-    """Return one mode sampled so fast that it acts as in continuous time."""
-    from scipy import linalg
-    omega = 2.0 * np.pi * frequency
-    step = linalg.expm(dt * np.array([[0.0, 1.0, 0.0], [-omega**2, -2.0 * damping * omega,
-                                                        omega**2], [0.0, 0.0, 0.0]]))
-    return Design(step[:2, :2], step[:2, 2], np.array([gain, 0.0]), dt, 0.0)
 
 
 @pytest.mark.parametrize('kp', [0.0, 0.5, 2.0])

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from identified_wing import design_model, identity, reduced_model
-from test_loop import mode, pid
+from loops import mode, pid
 
 from dewing_cli.main import main
 from dewing_control.model.loop import Loop

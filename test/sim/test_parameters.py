@@ -5,6 +5,7 @@
 import copy
 import dataclasses
 import math
+from dataclasses import dataclass
 
 import pytest
 from hypothesis import given
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
-from dewing_sim.parameters import Case, Flow
+from dewing_sim.parameters import Case, Flow, choice, from_mapping, real
 
 PAPER = parameters.to_mapping(parameters.load('paper'))
 LEAVES = dict(parameters.fields(Case))
@@ -221,3 +222,35 @@ def test_a_malformed_assignment_is_refused(text):
 
 def test_sections_can_be_read_alone():
     assert parameters.from_mapping(Flow, PAPER['flow']) == parameters.load('paper').flow
+
+
+@dataclass(frozen=True)
+class Extended:
+    """A section of a later version, which files of an earlier one do not have."""
+
+    gain: float = real('-', 'a gain', 0.0, 1.0, default=0.5)
+    law: str = choice('a law', 'one', 'other', default='one', open=True)
+
+
+@dataclass(frozen=True)
+class Later:
+    """A schema that has grown."""
+
+    speed: float = real('m/s', 'a speed', 0.0, 1.0)
+    extended: Extended
+
+
+def test_what_an_older_file_does_not_name_takes_its_default():
+    assert from_mapping(Later, {'speed': 1.0}) == Later(1.0, Extended(0.5, 'one'))
+    assert from_mapping(Later, {'speed': 1.0, 'extended': {'gain': 1.0}}).extended.gain == 1.0
+    with pytest.raises(BadInput, match='speed is missing'):
+        from_mapping(Later, {'extended': {'gain': 1.0}})
+    with pytest.raises(BadInput, match=r'extended.gain = 2.0 is out of range'):
+        from_mapping(Later, {'speed': 1.0, 'extended': {'gain': 2.0}})
+
+
+def test_an_open_choice_takes_a_part_from_outside_by_module_and_name():
+    assert from_mapping(Extended, {'law': 'my_package.my_module:Law'}).law.endswith(':Law')
+    for word in ('another', 'module:', ':Law', 'a b:Law', 'module:Law:more'):
+        with pytest.raises(BadInput, match='or package.module:Name'):
+            from_mapping(Extended, {'law': word})
