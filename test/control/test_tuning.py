@@ -14,7 +14,8 @@ from dewing_cli.main import main
 from dewing_control.model.loop import Loop
 from dewing_control.settings import ControllerSettings
 from dewing_control.tuning import on_wing as verification
-from dewing_control.tuning.tuning import Bounds, judge, pi_limit, step_error, tune, tuning
+from dewing_control.tuning import tuning
+from dewing_control.tuning.tuning import Bounds, judge, pi_limit, step_error, tune
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import RunFailed
 
