@@ -15,11 +15,11 @@ from dewing_sim.coupling import engine_choice, interface
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import HIGH_SLIP, Monitor
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.fluid.plate import starting_circulation
 from dewing_sim.inputs.amplifier import Amplifier
 from dewing_sim.inputs.disturbance import wall_pressure
-from dewing_sim.inputs.inflow_schedule import Encounter
+from dewing_sim.inputs.inflow_schedule import InflowSchedule
 from dewing_sim.machine import compilation
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
@@ -40,18 +40,18 @@ class Wing:
         self.scales = Scales.of(case.flow, case.membrane.chord)
         self.membrane = elements.make(case.membrane, self.scales)
         self.amplifier = Amplifier.of(case.actuation)
-        self.encounter = Encounter.of(case.flow.angle_of_attack, case.gust, case.rigid_motion,
-                                      self.scales)
+        self.inflow_schedule = InflowSchedule.of(
+            case.flow.angle_of_attack, case.gust, case.rigid_motion, self.scales)
         self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
             case.membrane.prestretch)
         _require_tension(case, math.sqrt(self.v_squared_slack))
         self.case = engine_choice.settled(case, self.membrane, self.scales,
-                                          not self.encounter.is_steady)
+                                          not self.inflow_schedule.is_steady)
         self.fluid = engines.make(
             self.case.numerics.engine, case.numerics.grid, self.scales.reynolds,
             case.flow.angle_of_attack, self.dt / self.scales.time)
         self._centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
-        self._resistance = interface.nodal_resistance(self.fluid, self.membrane)
+        self._impedance = interface.nodal_impedance(self.fluid, self.membrane)
         self._operator = self.operator(damping=0.0)
 
     def rest(self, progress=None) -> State:
@@ -73,19 +73,20 @@ class Wing:
         v_squared = self.amplifier.drive(state.v_squared, v_squared, self.dt)
         time = (state.step + 1) * self.dt
         pressure = 0.5 * wall_pressure(self.case.disturbance, time)     # q is rho U^2 / 2
-        onset = None if self.encounter.is_steady else self.encounter.at(time / self.scales.time)
-        coupled = self.couple(state, v_squared, pressure, self._operator, onset=onset)
+        schedule = self.inflow_schedule
+        inflow = None if schedule.is_steady else schedule.at(time / self.scales.time)
+        coupled = self.couple(state, v_squared, pressure, self._operator, inflow=inflow)
         return State.after(state.step + 1, v_squared, coupled)
 
     def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
-               damping: float = 0.0, onset: Onset | None = None) -> interface.Coupled:
+               damping: float = 0.0, inflow: Inflow | None = None) -> interface.Coupled:
         """Advance flow and membrane by one step; failures carry ``state`` and its time."""
         numerics = self.case.numerics
         try:
             return interface.solve(
                 self.fluid, self.membrane, operator, state.flow, state.motion,
                 state.still_jumps, self.dt / self.scales.time, v_squared, pressure,
-                numerics.coupling_tolerance, numerics.coupling_iterations, damping, onset)
+                numerics.coupling_tolerance, numerics.coupling_iterations, damping, inflow)
         except RunFailed as error:
             message = f'step {state.step + 1} (t = {(state.step + 1) * self.dt:.6g} s): {error}'
             raise type(error)(message, state) from None
@@ -98,7 +99,7 @@ class Wing:
         """
         mean_jump = starting_circulation(self.case.flow.angle_of_attack, 0.0)   # Cl / 2
         v_squared = self.case.actuation.voltage**2
-        return Operator.of(self.membrane, self.dt / self.scales.time, self._resistance, damping,
+        return Operator.of(self.membrane, self.dt / self.scales.time, self._impedance, damping,
                            self.membrane.equilibrium(mean_jump, v_squared), v_squared)
 
     def observe(self, state: State) -> Outputs:

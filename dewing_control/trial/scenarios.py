@@ -5,7 +5,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.disturbance import DISTURBANCES, wall_pressure
 from dewing_sim.parameters import Case, Disturbance
 from dewing_sim.state import State
@@ -77,7 +77,7 @@ class TwoToneWing(Wing):
         self.second = second
 
     def couple(self, state: State, v_squared: float, pressure: float, operator: Any,
-               damping: float = 0.0, onset: Onset | None = None) -> Any:
+               damping: float = 0.0, inflow: Inflow | None = None) -> Any:
         """Advance flow and membrane by one step; see `Wing.couple`."""
         pressure += 0.5 * wall_pressure(self.second, (state.step + 1) * self.dt)
-        return super().couple(state, v_squared, pressure, operator, damping, onset)
+        return super().couple(state, v_squared, pressure, operator, damping, inflow)

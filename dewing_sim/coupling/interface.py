@@ -13,7 +13,7 @@ from dewing_sim.coupling.membrane_step import step_of
 from dewing_sim.coupling.transfer import Load
 from dewing_sim.errors import NotConverged, RunFailed
 from dewing_sim.fluid.base import Fluid, Wall
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.structure.dynamics.band import LowRank
 from dewing_sim.structure.dynamics.step import Motion, Operator, Structure
 
@@ -42,7 +42,7 @@ class Coupled:
 def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, motion: Motion,
           still_jumps: np.ndarray, dt: float, v_squared: float, wall_pressure: float,
           tolerance: float, passes: int, damping: float = 0.0,
-          onset: Onset | None = None) -> Coupled:
+          inflow: Inflow | None = None) -> Coupled:
     """Advance flow and membrane together by ``dt``.
 
     Each pass moves the grid to the last known shape, predicts the flow up to its pressure jump,
@@ -51,14 +51,14 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
     ``tolerance`` of its largest deflection.  The first shape is that of the membrane under the
     pressure jump extrapolated from the ``still_jumps`` of the last steps (k, columns), without
     any by its own motion.  ``wall_pressure`` is a uniform pressure jump added to the load.
-    ``onset`` is the flow that the wing meets, by default the undisturbed stream; where its axes
+    ``inflow`` is the flow that the wing meets, by default the undisturbed stream; where its axes
     are accelerated, so is the membrane.  Raises `NotConverged` after ``passes``.
     """
     coasting = _coasting(fluid, structure, motion)
     step = step_of(structure, motion, dt, v_squared, operator, damping)
 
     def moved_under(jump, velocity, guess, accuracy):
-        load = Load(fluid, structure, jump, velocity, wall_pressure, onset)
+        load = Load(fluid, structure, jump, velocity, wall_pressure, inflow)
         return step.reach(load, guess, accuracy)
 
     position = motion.predict(dt)
@@ -70,12 +70,12 @@ def solve(fluid: Fluid, structure: Structure, operator: Operator, flow: Any, mot
             pass                # only a guess: the passes will tell whether the step can be made
     wall = wall_of(fluid, structure, position, motion.rate(position, dt))
     for iteration in range(1, passes + 1):
-        prediction = fluid.predict(flow, wall, onset)
+        prediction = fluid.predict(flow, wall, inflow)
         position = moved_under(prediction.jump, wall.velocity, position, ACCURACY)
         before, wall = wall, wall_of(fluid, structure, position, motion.rate(position, dt))
         residual = shape_change(wall.height, before.height)
         if residual <= tolerance:
-            still = prediction.jump + fluid.resistance @ (before.velocity - coasting)
+            still = prediction.jump + fluid.impedance @ (before.velocity - coasting)
             return Coupled(fluid.correct(prediction, wall.velocity), step.end(position),
                            iteration, residual,
                            np.array([still, *still_jumps[:len(EXTRAPOLATION) - 1]]))
@@ -107,7 +107,7 @@ def wall_of(fluid: Fluid, structure: Structure, position: np.ndarray, velocity: 
                                structure.surface(velocity)))
 
 
-def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
+def nodal_impedance(fluid: Fluid, structure: Structure) -> LowRank:
     """Return -d force / d velocity (m, m) on the free degrees of freedom at rest.
 
     Its rank is the number of flow columns.
@@ -118,5 +118,5 @@ def nodal_resistance(fluid: Fluid, structure: Structure) -> LowRank:
     columns = np.array([transfer.wall(fluid.columns, line, motion)[1] for motion in unit])
     basis = np.stack([structure.spread(column.reshape(line.shape)).ravel()[structure.free]
                       for column in columns.T], axis=1)
-    weight = np.diff(fluid.columns)[:, None] * fluid.resistance
+    weight = np.diff(fluid.columns)[:, None] * fluid.impedance
     return LowRank(np.ascontiguousarray(basis), weight)

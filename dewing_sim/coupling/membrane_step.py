@@ -46,7 +46,7 @@ class MembraneStep(Step):
         return _iterated(
             position, self._tension(position), motion.position, motion.position_before,
             motion.velocity, motion.velocity_before, self.structure.mass, self.dt, self.damping,
-            fluid.columns, load.jump, load.velocity, fluid.resistance, load.wall_pressure,
+            fluid.columns, load.jump, load.velocity, fluid.impedance, load.wall_pressure,
             inverse.factors, inverse.row, inverse.column, inverse.value, inverse.answer)
 
     def _tension(self, position: np.ndarray) -> np.ndarray:
@@ -72,7 +72,7 @@ def _curve(membrane: Membrane, v_squared: float) -> TensionCurve | None:
 
 @numba.njit(cache=True, error_model='numpy')
 def _iterated(position, tension, now, before, velocity_now, velocity_before, mass, dt, damping,
-              columns, jump, reference, resistance, uniform, factors, row, column, value, answer):
+              columns, jump, reference, impedance, uniform, factors, row, column, value, answer):
     """Return the next position and the largest correction."""
     velocity, force = np.empty(position.shape), np.empty(position.shape)
     for i in range(mass.size):
@@ -82,7 +82,7 @@ def _iterated(position, tension, now, before, velocity_now, velocity_before, mas
             force[i, k] = -mass[i] * (damping * w + (
                 3.0 * w - 4.0 * velocity_now[i, k] + velocity_before[i, k]) * (0.5 / dt))
     _add_pull(position, tension, force)
-    add_load(columns, position, velocity, jump, reference, resistance, uniform, force)
+    add_load(columns, position, velocity, jump, reference, impedance, uniform, force)
     correction = np.empty((1, 2 * mass.size - 4))
     for i in range(1, mass.size - 1):
         correction[0, 2 * i - 2], correction[0, 2 * i - 1] = force[i, 0], force[i, 1]

@@ -13,7 +13,7 @@ import numba
 import numpy as np
 
 from dewing_sim.fluid.base import Fluid
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.structure.dynamics.step import Structure
 
 
@@ -77,7 +77,7 @@ def add_nodal_force(position, jump, place, width, force):
 
 
 @numba.njit(cache=True, error_model='numpy')
-def add_load(columns, position, velocity, jump, reference, resistance, uniform, force):
+def add_load(columns, position, velocity, jump, reference, impedance, uniform, force):
     """Add to ``force`` (n + 1, 2) that of a `Load` whose columns moved with ``reference``."""
     place, width = overlaps(columns, position)
     w = column_velocity(columns, position, velocity, place, width)
@@ -87,7 +87,7 @@ def add_load(columns, position, velocity, jump, reference, resistance, uniform, 
         total[i] = jump[i] + uniform
     for j in range(jump.size):
         for i in range(jump.size):
-            total[i] -= resistance[i, j] * w[j]
+            total[i] -= impedance[i, j] * w[j]
     add_nodal_force(position, total, place, width, force)
 
 
@@ -119,9 +119,9 @@ def coasting_velocity(columns, position, velocity, position_before, velocity_bef
 
 
 @numba.njit(cache=True)
-def _nodal_load(columns, position, velocity, jump, reference, resistance, uniform):
+def _nodal_load(columns, position, velocity, jump, reference, impedance, uniform):
     force = np.zeros(position.shape)
-    add_load(columns, position, velocity, jump, reference, resistance, uniform, force)
+    add_load(columns, position, velocity, jump, reference, impedance, uniform, force)
     return force
 
 
@@ -137,20 +137,20 @@ class Load:
     jump: np.ndarray
     velocity: np.ndarray
     wall_pressure: float
-    onset: Onset | None = None
+    inflow: Inflow | None = None
 
     def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return the nodal forces (nodes, 2) at these velocities."""
         force = self.structure.spread(_nodal_load(
             self.fluid.columns, self.structure.surface(position),
-            self.structure.surface(velocity), self.jump, self.velocity, self.fluid.resistance,
+            self.structure.surface(velocity), self.jump, self.velocity, self.fluid.impedance,
             self.wall_pressure))
         if self.has_frame_acceleration:
-            force -= self.structure.mass[:, None] * self.onset.frame_acceleration(
+            force -= self.structure.mass[:, None] * self.inflow.frame_acceleration(
                 position, velocity)
         return force
 
     @property
     def has_frame_acceleration(self) -> bool:
         """Whether the axes are accelerated."""
-        return self.onset is not None and self.onset.is_accelerated
+        return self.inflow is not None and self.inflow.is_accelerated

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 
 EDGE = 0.01                 # chords around an edge where CFL numbers count apart
 HIGH_SLIP = 0.75            # U: half of what stops a run of the conformal engine
@@ -40,7 +40,7 @@ class Prediction:
     """A flow step that is complete but for the wall velocity, on which the load depends linearly.
 
     ``jump`` (n,) is the pressure jump if the wall moves with ``wall.velocity``; moving it with
-    another velocity w changes it by -resistance (w - wall.velocity), see `Fluid.resistance`.
+    another velocity w changes it by -impedance (w - wall.velocity), see `Fluid.impedance`.
     ``fields`` is the engine's own.
     """
 
@@ -87,7 +87,7 @@ class Fluid(Protocol):
     """An incompressible Navier-Stokes solver about a moving wing."""
 
     columns: np.ndarray             # column faces from 0 to 1 (n + 1,)
-    resistance: np.ndarray          # (n, n): added-mass matrix over theta = 2 dt / 3
+    impedance: np.ndarray           # (n, n): of the interface, added mass over theta = 2 dt / 3
 
     def rest(self, wall: Wall, circulation: float) -> Any:
         """Return a starting field with the given bound circulation (U c)."""
@@ -95,10 +95,10 @@ class Fluid(Protocol):
     def with_circulation(self, state: Any, circulation: float) -> Any:
         """Return ``state`` with the far-field values of another total circulation (U c)."""
 
-    def predict(self, state: Any, wall: Wall, onset: Onset | None = None) -> Prediction:
+    def predict(self, state: Any, wall: Wall, inflow: Inflow | None = None) -> Prediction:
         """Advance one step with the wall at its new place, short of its final velocity.
 
-        ``onset`` is the stream at the new time, by default the undisturbed one; an engine that
+        ``inflow`` is the stream at the new time, by default the undisturbed one; an engine that
         knows no other raises `BadInput`.
         """
 

@@ -17,7 +17,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class Onset:
+class Inflow:
     """The stream relative to the pivot and the motion of the axes."""
 
     stream: complex                         # velocity far away, relative to the pivot
@@ -29,7 +29,7 @@ class Onset:
     pivot_acceleration: complex = 0.0
 
     @classmethod
-    def steady(cls, alpha: float) -> 'Onset':
+    def steady(cls, alpha: float) -> 'Inflow':
         """Return the undisturbed stream at the angle of attack ``alpha`` (rad)."""
         return cls(stream=complex(np.exp(1j * alpha)), incidence=alpha)
 

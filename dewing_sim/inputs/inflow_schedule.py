@@ -1,6 +1,6 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""Gusts and rigid motion as functions of time, and the onset flow that they make."""
+"""Gusts and rigid motion as functions of time, and the inflow that they make."""
 
 import math
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_sim.errors import BadInput
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.parameters import Gust, RigidMotion
 from dewing_sim.scales import Scales
 
@@ -64,7 +64,7 @@ SHAPES = {'ramp': _ramp, 'one_minus_cosine': _one_minus_cosine, 'sine': _sine}
 
 
 @dataclass(frozen=True)
-class Encounter:
+class InflowSchedule:
     """A gust and a rigid motion, dimensionless; see `Gust` and `RigidMotion` for their meaning."""
 
     alpha: float
@@ -76,7 +76,7 @@ class Encounter:
     motion_course: Course = Course('none', 0.0, 1.0)
 
     @classmethod
-    def of(cls, alpha: float, gust: Gust, motion: RigidMotion, scales: Scales) -> 'Encounter':
+    def of(cls, alpha: float, gust: Gust, motion: RigidMotion, scales: Scales) -> 'InflowSchedule':
         """Return what the sections say; raise `BadInput` for what outruns the free stream."""
         found = cls(alpha, complex(gust.horizontal, gust.vertical) / scales.speed,
                     _course(gust, scales), motion.heave / scales.length,
@@ -95,17 +95,17 @@ class Encounter:
         """Whether nothing ever disturbs the stream."""
         return self.gust_course.shape == self.motion_course.shape == 'none'
 
-    def at(self, time: float) -> Onset:
-        """Return the onset flow at ``time`` (c/U)."""
+    def at(self, time: float) -> Inflow:
+        """Return the inflow at ``time`` (c/U)."""
         value, rate, _ = self.gust_course(time)
         course = self.motion_course(time)
         heave, pitch = self.heave * course, self.pitch * course
         incidence = self.alpha + pitch[0]
         axes = complex(math.cos(incidence), math.sin(incidence))
-        return Onset(stream=axes * (1.0 + self.gust * value - 1j * heave[1]),
-                     stream_rate=axes * (self.gust * rate - 1j * heave[2]),
-                     incidence=incidence, pitch_rate=pitch[1], pitch_acceleration=pitch[2],
-                     pivot=self.pivot, pivot_acceleration=axes * 1j * heave[2])
+        return Inflow(stream=axes * (1.0 + self.gust * value - 1j * heave[1]),
+                      stream_rate=axes * (self.gust * rate - 1j * heave[2]),
+                      incidence=incidence, pitch_rate=pitch[1], pitch_acceleration=pitch[2],
+                      pivot=self.pivot, pivot_acceleration=axes * 1j * heave[2])
 
 
 def _course(section: Gust | RigidMotion, scales: Scales) -> Course:

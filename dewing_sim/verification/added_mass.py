@@ -30,7 +30,7 @@ class AddedMassRun:
     def __call__(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the faces x (n + 1,) and dx_i dF_i/da_j in rho c^2."""
         fluid = engines.make(self.engine, self.grid, 2500.0, 0.0, 0.004)
-        mass = fluid.resistance * (2.0 * fluid.dt / 3.0)
+        mass = fluid.impedance * (2.0 * fluid.dt / 3.0)
         return fluid.columns, np.diff(fluid.columns)[:, None] * mass
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.plate import starting_circulation
-from dewing_sim.inputs.inflow_schedule import Course, Encounter
+from dewing_sim.inputs.inflow_schedule import Course, InflowSchedule
 from dewing_sim.verification.closed_forms import TRIPLE_DECK, WAGNER, oscillating_plate
 from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import limit
@@ -30,7 +30,7 @@ THEODORSEN = 'Theodorsen 1935, ideal flow'
 
 
 @dataclass(frozen=True)
-class EncounterRun:
+class UnsteadyRun:
     """A flat plate at ``alpha`` (deg) in a ``shape`` of `Course`; returns t* and Cl (2, steps).
 
     ``kind`` is one of `MOTIONS`, of the given amplitude unless ``pitch`` (deg) is.  The flow
@@ -57,48 +57,48 @@ class EncounterRun:
         """March the flow."""
         return np.array(list(self._march())).T
 
-    def encounter(self) -> Encounter:
+    def schedule(self) -> InflowSchedule:
         """Return gust and motion."""
         course = Course(self.shape, 0.0, self.length)
         amounts = dict(MOTIONS[self.kind])
         if self.pitch is not None:
             amounts['pitch'] = np.radians(self.pitch)
         name = 'gust_course' if self.kind == 'gust' else 'motion_course'
-        return Encounter(np.radians(self.alpha), **amounts, **{name: course})
+        return InflowSchedule(np.radians(self.alpha), **amounts, **{name: course})
 
     def _march(self) -> Iterator[tuple[float, float]]:
         steps = round(self.duration / TIME_STEPS[self.grid])
-        dt, encounter = self.duration / steps, self.encounter()
-        fluid = engines.make(self.engine, self.grid, self.reynolds, encounter.alpha, dt)
+        dt, schedule = self.duration / steps, self.schedule()
+        fluid = engines.make(self.engine, self.grid, self.reynolds, schedule.alpha, dt)
         wall = Wall.flat(fluid.columns)
         flow = fluid.rest(wall, starting_circulation(np.radians(self.start), 0.0))
         for step in range(1, steps + 1):
             if self.engine == 'conformal':
-                prediction = fluid.predict(flow, wall, encounter.at(step * dt))
+                prediction = fluid.predict(flow, wall, schedule.at(step * dt))
             else:
-                wall = moving_plate(fluid.columns, encounter, step * dt)
+                wall = moving_plate(fluid.columns, schedule, step * dt)
                 prediction = fluid.predict(flow, wall)
             flow = fluid.correct(prediction, wall.velocity)
             yield step * dt, fluid.loads(flow).cl
 
 
-def moving_plate(columns: np.ndarray, encounter: Encounter, time: float) -> Wall:
+def moving_plate(columns: np.ndarray, schedule: InflowSchedule, time: float) -> Wall:
     """Return heave and pitch as a motion of the wall in a steady stream, for small angles."""
-    heave, rise, _ = encounter.heave * encounter.motion_course(time)
-    pitch, turn, _ = encounter.pitch * encounter.motion_course(time)
-    arms = columns - encounter.pivot
+    heave, rise, _ = schedule.heave * schedule.motion_course(time)
+    pitch, turn, _ = schedule.pitch * schedule.motion_course(time)
+    arms = columns - schedule.pivot
     centres = 0.5 * (arms[1:] + arms[:-1])
     return Wall(heave - pitch * arms, rise - turn * centres,
                 (rise - turn * arms[0], rise - turn * arms[-1]))
 
 
-def oscillation(engine: str, grid: str, kind: str, reynolds: float) -> EncounterRun:
+def oscillation(engine: str, grid: str, kind: str, reynolds: float) -> UnsteadyRun:
     """Return a few periods of a sine."""
     period = 2.0 * np.pi / OMEGA
-    return EncounterRun(engine, grid, kind, 'sine', period, PERIODS * period, reynolds)
+    return UnsteadyRun(engine, grid, kind, 'sine', period, PERIODS * period, reynolds)
 
 
-def runs(engine: str, quick: bool) -> dict[str, EncounterRun]:
+def runs(engine: str, quick: bool) -> dict[str, UnsteadyRun]:
     """Return oscillations, and on the engine that has them gusts and a lasting pitch."""
     kinds = ('heave', 'pitch', 'gust') if engine == 'conformal' else ('heave', 'pitch')
     grid, numbers = ('fast', (REFERENCE,)) if quick else ('standard', REYNOLDS)
@@ -106,12 +106,12 @@ def runs(engine: str, quick: bool) -> dict[str, EncounterRun]:
              for kind in kinds for reynolds in numbers}
     if engine != 'conformal':
         return found
-    found |= {'pitched': EncounterRun(engine, grid, 'pitch', 'ramp', 2.0, 30.0, alpha=2.0,
-                                      pitch=2.0, start=2.0),
-              'inclined': EncounterRun(engine, grid, 'pitch', 'none', 1.0, 30.0, alpha=4.0,
-                                       start=2.0)}
+    found |= {'pitched': UnsteadyRun(engine, grid, 'pitch', 'ramp', 2.0, 30.0, alpha=2.0,
+                                     pitch=2.0, start=2.0),
+              'inclined': UnsteadyRun(engine, grid, 'pitch', 'none', 1.0, 30.0, alpha=4.0,
+                                      start=2.0)}
     if not quick:
-        found |= {f'step {reynolds:g}': EncounterRun(
+        found |= {f'step {reynolds:g}': UnsteadyRun(
             engine, grid, 'gust', 'ramp', RAMP, 6.0, reynolds) for reynolds in REYNOLDS}
     return found
 

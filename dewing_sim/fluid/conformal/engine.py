@@ -20,11 +20,11 @@ from dewing_sim.fluid.conformal import noslip, step
 from dewing_sim.fluid.conformal.courant import courant
 from dewing_sim.fluid.conformal.edges import EdgeTable
 from dewing_sim.fluid.conformal.frame import Frame
-from dewing_sim.fluid.conformal.geometry import Geometry, Surroundings
+from dewing_sim.fluid.conformal.geometry import Geometry, WallGeometry
 from dewing_sim.fluid.conformal.grid import LARGEST_STEP, PRESETS, Grid
 from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.conformal.pressure import added_mass, force
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 
 PINNED = 1.0e-9         # chords
 
@@ -66,7 +66,7 @@ class Predicted(NamedTuple):
     """What `correct` needs of a step."""
 
     before: FlowState
-    around: Surroundings
+    around: WallGeometry
     w: np.ndarray
     q: np.ndarray
     psi: np.ndarray
@@ -95,8 +95,8 @@ class Conformal:
         self.geometry = Geometry(self.solver.exterior, dt)
         self.edges = EdgeTable(grid, self.solver.poisson, self.nu, dt)
         self._still = np.zeros(len(self.columns) - 1)
-        self.resistance = self._flat_resistance()
-        self._steady = Frame.of(Onset.steady(alpha), grid)
+        self.impedance = self._flat_impedance()
+        self._steady = Frame.of(Inflow.steady(alpha), grid)
 
     @classmethod
     def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'Conformal':
@@ -120,10 +120,10 @@ class Conformal:
         """Return ``state`` with another circulation, by a starting vortex at infinity."""
         return replace(state, circulation=circulation)
 
-    def predict(self, state: FlowState, wall: Wall, onset: Onset | None = None) -> Prediction:
+    def predict(self, state: FlowState, wall: Wall, inflow: Inflow | None = None) -> Prediction:
         """Advance vorticity and stream function with the wall at its new place and velocity."""
         _require_pinned(wall)
-        frame = Frame.of(onset, self.grid) if onset else self._steady
+        frame = Frame.of(inflow, self.grid) if inflow else self._steady
         around = self.geometry.follow(wall, state.height, state.map, state.map_before)
         edges = self.edges.near(around.map)
         motion = frame.wall_motion(around, wall.velocity, state.velocity, state.velocity_before,
@@ -135,7 +135,7 @@ class Conformal:
             motion.acceleration, motion.speed, edges.share, edges.influence, self.solver)
         self._require_hold(slip, state)
         fields = Predicted(state, around, w, q, psi, pressure, circulation,
-                           frame.onset.incidence, slip)
+                           frame.inflow.incidence, slip)
         return Prediction(wall, around.jump(pressure), fields)
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
@@ -180,7 +180,7 @@ class Conformal:
                        f'at a CFL number of {self.monitor(before).edge_courant:.3g} next to the '
                        f'edges: lower the time step{limit} or take a coarser grid')
 
-    def _flat_resistance(self) -> np.ndarray:
+    def _flat_impedance(self) -> np.ndarray:
         """Return 3 / (2 dt) times the added mass of the flat plate between its columns."""
         flat = self.geometry.at_rest(self.geometry.mapping.flat())
         jumps = []

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
-from dewing_sim.fluid.conformal.geometry import Surroundings, WallMotion
+from dewing_sim.fluid.conformal.geometry import WallGeometry, WallMotion
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.mapping import Map
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 
 STILL = np.empty((0, 0))
 
@@ -27,46 +27,46 @@ STILL = np.empty((0, 0))
 class Frame:
     """The axes of the chord at one instant, on one grid."""
 
-    onset: Onset
+    inflow: Inflow
     corner: np.ndarray              # (n,) stream function over 2 a sinh(eta) half a step on
     node: np.ndarray                # (n,) the same at the nodes
     grid: Grid
 
     @classmethod
-    def of(cls, onset: Onset, grid: Grid) -> 'Frame':
-        """Return the frame of an onset flow."""
-        speed, angle = abs(onset.stream), np.angle(onset.stream)
-        return cls(onset, speed * np.sin(grid.xi + 0.5 * grid.step - angle),
+    def of(cls, inflow: Inflow, grid: Grid) -> 'Frame':
+        """Return the frame of an inflow."""
+        speed, angle = abs(inflow.stream), np.angle(inflow.stream)
+        return cls(inflow, speed * np.sin(grid.xi + 0.5 * grid.step - angle),
                    speed * np.sin(grid.xi - angle), grid)
 
     @property
     def turn(self) -> float:
         """Angular velocity r, positive anticlockwise: nose down."""
-        return -self.onset.pitch_rate
+        return -self.inflow.pitch_rate
 
     def grid_stream(self, m: Map) -> np.ndarray:
         """Return the stream function (n, rows) of turning at the corners, empty without."""
         if not self.turn:
             return STILL
         corners = self.grid.xi + 0.5 * self.grid.step
-        arm = m.places(self.grid.face, corners) - self.onset.pivot
+        arm = m.places(self.grid.face, corners) - self.inflow.pivot
         return -0.5 * self.turn * np.abs(arm)**2
 
-    def wall_motion(self, around: Surroundings, velocity: np.ndarray, now: np.ndarray,
+    def wall_motion(self, around: WallGeometry, velocity: np.ndarray, now: np.ndarray,
                     before: np.ndarray, dt: float) -> WallMotion:
         """Return the motion of the membrane that has these velocities (columns,) in the axes.
 
         ``now`` and ``before`` are those of the last two steps.
         """
         within = around.wall_motion(velocity, now, before, dt)
-        onset, turn = self.onset, self.turn
-        if onset.stream_rate == 0.0 and not onset.is_turning:
+        inflow, turn = self.inflow, self.turn
+        if inflow.stream_rate == 0.0 and not inflow.is_turning:
             return within
-        arm = around.line.place - onset.pivot
+        arm = around.line.place - inflow.pivot
         flux = 1j * turn * arm * np.conj(around.line.slope)
         product = arm.imag * within.speed
         coriolis = fft.irfft(1j * self.grid.wavenumbers * fft.rfft(product), len(product))
-        relative = -1j * onset.pitch_acceleration * arm - onset.stream_rate
+        relative = -1j * inflow.pitch_acceleration * arm - inflow.stream_rate
         return WallMotion(within.u + flux.imag, within.v + flux.real,
                           within.acceleration + (relative * np.conj(around.line.slope)).real
                           - turn * coriolis,

@@ -21,7 +21,7 @@ class WallMotion(NamedTuple):
     speed: np.ndarray
 
 
-class Surroundings(NamedTuple):
+class WallGeometry(NamedTuple):
     """One shape of the membrane, and how it moves."""
 
     map: Map
@@ -51,13 +51,13 @@ class Geometry:
         self.mapping = Mapping(exterior)
         self._dt = dt
 
-    def follow(self, wall: Wall, height: np.ndarray, now: Map, before: Map) -> Surroundings:
+    def follow(self, wall: Wall, height: np.ndarray, now: Map, before: Map) -> WallGeometry:
         """Return the map that follows ``wall``, moving from ``now``, of ``height``."""
-        return Surroundings(*self.mapping.move(wall.height, height, now, before, self._dt))
+        return WallGeometry(*self.mapping.move(wall.height, height, now, before, self._dt))
 
-    def at_rest(self, m: Map) -> Surroundings:
+    def at_rest(self, m: Map) -> WallGeometry:
         """Return a membrane at rest."""
-        return Surroundings(m, np.zeros_like(m.shape), 0.0, self.mapping.wall(m))
+        return WallGeometry(m, np.zeros_like(m.shape), 0.0, self.mapping.wall(m))
 
 
 @kernel

@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.fluid.conformal.stockham import Turns, transform
+from dewing_sim.fluid.conformal.stockham import TwiddleFactors, transform
 from dewing_sim.machine.kernels import kernel
 
 
 class Plan(NamedTuple):
     """What transforms of n values need; all are made of transforms of n / 2."""
 
-    half: Turns                     # of n / 2 values
+    half: TwiddleFactors            # of n / 2 values
     cos: np.ndarray                 # (n / 2 + 1,) real part of W^k = exp(-2 pi i k / n)
     sin: np.ndarray                 # (n / 2 + 1,) its imaginary part
 
@@ -21,7 +21,7 @@ class Plan(NamedTuple):
     def of(cls, n: int) -> 'Plan':
         """Return the plan for an even ``n``."""
         angles = -2.0 * np.pi / n * np.arange(n // 2 + 1)
-        return cls(Turns.of(n // 2), np.cos(angles), np.sin(angles))
+        return cls(TwiddleFactors.of(n // 2), np.cos(angles), np.sin(angles))
 
 
 @kernel

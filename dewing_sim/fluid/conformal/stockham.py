@@ -33,7 +33,7 @@ butterfly = numba.njit(error_model='numpy')
 _stockham = types.ExternalFunction(SYMBOL, SIGNATURE)
 
 
-class Turns(NamedTuple):
+class TwiddleFactors(NamedTuple):
     """Radices of the stages and the factors exp(-2 pi i k a / (m r)) of all of them in a row."""
 
     radices: np.ndarray
@@ -41,15 +41,15 @@ class Turns(NamedTuple):
     sin: np.ndarray
 
     @classmethod
-    def of(cls, n: int) -> 'Turns':
-        """Return the turns for ``n`` values; raise `BadInput` for other factors than 2 and 3."""
+    def of(cls, n: int) -> 'TwiddleFactors':
+        """Return those for ``n`` values; raise `BadInput` for other factors than 2 and 3."""
         _compile()
         radices = _factors(n)
-        m, turns = 1, []
+        m, twiddles = 1, []
         for r in radices:
-            turns.append(np.outer(np.arange(m), np.arange(1, r)).ravel() / (m * r))
+            twiddles.append(np.outer(np.arange(m), np.arange(1, r)).ravel() / (m * r))
             m *= r
-        angles = -2.0 * np.pi * np.concatenate(turns)
+        angles = -2.0 * np.pi * np.concatenate(twiddles)
         return cls(np.array(radices, dtype=np.int64), np.cos(angles), np.sin(angles))
 
 
@@ -79,12 +79,12 @@ class Buffers(NamedTuple):
 
 
 @kernel
-def transform(b, n, lanes, turns):
+def transform(b, n, lanes, twiddles):
     """Return sum_i x_i exp(-2 pi i k i / n) of x (n, lanes) in ``b``, real and imaginary part."""
     size = n * lanes
-    stages = turns.radices.size
+    stages = twiddles.radices.size
     _stockham(b.re.ctypes, b.im.ctypes, b.next_re.ctypes, b.next_im.ctypes, n, lanes,
-              turns.radices.ctypes, stages, turns.cos.ctypes, turns.sin.ctypes)
+              twiddles.radices.ctypes, stages, twiddles.cos.ctypes, twiddles.sin.ctypes)
     re, im = (b.re, b.im) if stages % 2 == 0 else (b.next_re, b.next_im)
     return re[:size].reshape((n, lanes)), im[:size].reshape((n, lanes))
 

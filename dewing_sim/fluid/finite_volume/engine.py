@@ -18,7 +18,7 @@ from dewing_sim.fluid.finite_volume import adi, mapping, momentum, projection, t
 from dewing_sim.fluid.finite_volume.grid import PRESETS, Grid, build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.potential import Potential
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 
 UPWIND_SHARE = 0.5                  # in the far field only
 UPWIND_START, UPWIND_FULL = 1.0, 4.0    # chords from the plate
@@ -68,7 +68,7 @@ class FiniteVolume:
         self.theta = 2.0 * dt / 3.0
         self.columns = grid.columns
         self.poisson = Poisson.of(grid)
-        self.resistance = self.poisson.added_mass / self.theta
+        self.impedance = self.poisson.added_mass / self.theta
         self.potential = Potential.of(grid, alpha)
         self._g = mapping.decay(grid)
         self._upwind_x = _upwind(np.maximum(-grid.x, grid.x - 1.0))
@@ -106,12 +106,12 @@ class FiniteVolume:
             field[1:, [0, -1]] = far_y[1:, [0, -1]]
         return replace(state, u=u, v=v, fx=fx, w=w, circulation=circulation)
 
-    def predict(self, state: FlowState, wall: Wall, onset: Onset | None = None) -> Prediction:
+    def predict(self, state: FlowState, wall: Wall, inflow: Inflow | None = None) -> Prediction:
         """Advance momentum and the forward half of the projection with the wall in place.
 
-        Raises `BadInput` for any ``onset``: the far field is that of a steady stream.
+        Raises `BadInput` for any ``inflow``: the far field is that of a steady stream.
         """
-        if onset is not None:
+        if inflow is not None:
             raise BadInput('the finite-volume engine knows no gusts, heave or pitch: '
                            'numerics.engine: conformal does')
         metrics = mapping.metrics(self.grid, wall)
@@ -133,7 +133,7 @@ class FiniteVolume:
         fx, fy = fields.fx, fields.fy.copy()
         fy[grid.plate, grid.middle] = velocity
         phi = self.poisson.backward(
-            fields.even_hat, fields.odd_hat, fields.increment + self.resistance @ change,
+            fields.even_hat, fields.odd_hat, fields.increment + self.impedance @ change,
             grid.dx[grid.plate] * change / self.theta)
         fx = fx.copy()
         projection.correct(fx, fy, phi, grid.dxf, grid.dyf, self.theta,

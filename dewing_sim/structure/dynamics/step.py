@@ -77,14 +77,14 @@ class Structure(Protocol):
 class Operator:
     """Inverse of the iteration matrix at a reference state, made once and used in every step.
 
-    ``resistance`` (m, m) is -d(load)/d(velocity).
+    ``impedance`` (m, m) is -d(load)/d(velocity).
     """
 
-    resistance: LowRank
+    impedance: LowRank
     inverse: Inverse
 
     @classmethod
-    def of(cls, structure: Structure, dt: float, resistance: LowRank | None = None,
+    def of(cls, structure: Structure, dt: float, impedance: LowRank | None = None,
            damping: float = 0.0, position: np.ndarray | None = None, v_squared: float = 0.0,
            ) -> 'Operator':
         """Return the operator about ``position``, by default the structure's rest state.
@@ -93,9 +93,9 @@ class Operator:
         motion, such as the trimmed one, saves iterations.
         """
         position = structure.rest_position if position is None else position
-        resistance = resistance or LowRank.zero(position.ravel()[structure.free].size)
+        impedance = impedance or LowRank.zero(position.ravel()[structure.free].size)
         band = _band(structure, position, v_squared, dt, damping)
-        return cls(resistance, Inverse.of(band, resistance, 1.5 / dt))
+        return cls(impedance, Inverse.of(band, impedance, 1.5 / dt))
 
 
 def _band(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
@@ -121,7 +121,7 @@ class Step:
     """The equations of one time step, solved for one load after another.
 
     Loads ``load(position, velocity)`` return the external nodal forces (nodes, 2), affine in
-    velocity with the slope -``operator.resistance``. ``damping`` is mass-proportional (1/time).
+    velocity with the slope -``operator.impedance``. ``damping`` is mass-proportional (1/time).
     Newton's method goes on until the largest correction falls below a tolerance (chords). It keeps
     a tangent, at first that of ``operator``, as long as corrections stay in the linear range of
     the structure and shrink well; new tangents keep the flow's part of the operator. The last
@@ -180,7 +180,7 @@ class Step:
         """Return the inverse at ``position``; unless exact, with the operator's flow part."""
         band = _band(self.structure, position, self.v_squared, self.dt, self.damping, before)
         if self._exact:
-            return Inverse.of(band, self.operator.resistance, 1.5 / self.dt)
+            return Inverse.of(band, self.operator.impedance, 1.5 / self.dt)
         return self.operator.inverse.about(band)
 
     def _share(self, load: Load, start: np.ndarray, share: float) -> np.ndarray:

@@ -11,7 +11,7 @@ from dewing_sim import parameters
 from dewing_sim.coupling import transfer
 from dewing_sim.coupling.membrane_step import MembraneStep, step_of
 from dewing_sim.errors import Diverged, Slack
-from dewing_sim.fluid.inflow import Onset
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.structure.dynamics.step import Motion, Operator, Step
 from dewing_sim.structure.elements import make
 from dewing_sim.structure.membrane import Membrane
@@ -29,14 +29,14 @@ MOTION = Motion(MEMBRANE.rest_position + 0.020 * ARCH, 2.0 * ARCH,
 OPERATOR = Operator.of(MEMBRANE, DT)
 
 
-def loaded(pressure: float = 10.0, onset: Onset | None = None) -> transfer.Load:
+def loaded(pressure: float = 10.0, inflow: Inflow | None = None) -> transfer.Load:
     """Return the load of a flow on 9 columns that resists motion."""
     columns = CHORD * np.linspace(0.0, 1.0, 10)**1.2
     rng = np.random.default_rng(2)
-    fluid = SimpleNamespace(columns=columns, resistance=np.asfortranarray(
+    fluid = SimpleNamespace(columns=columns, impedance=np.asfortranarray(
         10.0 * np.eye(9) + rng.uniform(0.0, 3.0, (9, 9))))
     return transfer.Load(fluid, MEMBRANE, pressure * rng.uniform(0.5, 1.5, 9),
-                         0.05 * rng.normal(size=9), 0.3, onset)
+                         0.05 * rng.normal(size=9), 0.3, inflow)
 
 
 def steps(motion: Motion = MOTION, v_squared: float = V_SQUARED, membrane: Membrane = MEMBRANE,
@@ -53,13 +53,13 @@ def test_the_step_of_a_membrane_is_compiled(element, kind):
     assert type(step) is kind
 
 
-@pytest.mark.parametrize('onset', [None, Onset(stream=1.0, pivot_acceleration=30.0 - 50.0j)])
+@pytest.mark.parametrize('inflow', [None, Inflow(stream=1.0, pivot_acceleration=30.0 - 50.0j)])
 @pytest.mark.parametrize('membrane', [MEMBRANE, VISCOUS])
-def test_compiled_iteration_is_the_general_one(membrane, onset):
+def test_compiled_iteration_is_the_general_one(membrane, inflow):
     compiled, general = steps(membrane=membrane)
     position = MOTION.predict(DT) + 1.0e-3 * ARCH[:, ::-1]
-    moved, size = compiled._iterate(loaded(onset=onset), position, None)
-    expected, expected_size = general._iterate(loaded(onset=onset), position, None)
+    moved, size = compiled._iterate(loaded(inflow=inflow), position, None)
+    expected, expected_size = general._iterate(loaded(inflow=inflow), position, None)
     assert expected_size > 1.0e-4 * CHORD
     assert moved == pytest.approx(expected, rel=1.0e-12, abs=1.0e-13 * CHORD)
     assert size == pytest.approx(expected_size, rel=1.0e-9)

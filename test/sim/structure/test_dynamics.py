@@ -103,11 +103,11 @@ def added_mass_load(motion, dt, added):
     return load
 
 
-def test_resistance_acts_as_added_mass():
+def test_impedance_acts_as_added_mass():
     dt, added = 1e-4, 2.5 * MEMBRANE.mass
     weight = np.diag(np.repeat(added, 2)[MEMBRANE.free]) * 1.5 / dt
-    resistance = LowRank(np.eye(len(weight)), weight)
-    operator = Operator.of(MEMBRANE, dt, resistance)
+    impedance = LowRank(np.eye(len(weight)), weight)
+    operator = Operator.of(MEMBRANE, dt, impedance)
     heavy = Membrane(MEMBRANE.sheet, 1.5, REST, MEMBRANE.mass + added)
     start = released(2e-3, 300.0, dt)
     motion = start
@@ -190,7 +190,7 @@ def test_non_finite_load_stops_the_step(value):
     assert caught.value.state is motion
 
 
-def test_undeclared_resistance_does_not_converge():
+def test_undeclared_impedance_does_not_converge():
     motion = released(1e-4, OMEGA, 1e-4)
     with pytest.raises(NotConverged, match='after 30 iterations .* reduce the time') as caught:
         run(motion, 1e-4, 1, lambda p, w: -1.1 * MEMBRANE.mass[:, None] * 1.5e4 * w)

@@ -16,7 +16,7 @@ from dewing_sim.fluid.conformal.grid import PRESETS, Grid, Preset
 from dewing_sim.fluid.conformal.mapping import Mapping
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.spectral import Plan
-from dewing_sim.fluid.conformal.stockham import Buffers, Turns, transform
+from dewing_sim.fluid.conformal.stockham import Buffers, TwiddleFactors, transform
 
 COARSE = Preset(48, 40, 0.016)
 ALPHA = np.radians(4.0)
@@ -81,13 +81,13 @@ def test_transform_is_that_of_the_library(n, lanes):
     x, y = np.random.default_rng(n).normal(size=(2, n, lanes))
     buffers = Buffers.of(n * lanes)
     buffers.re[:], buffers.im[:] = x.ravel(), y.ravel()
-    real, imaginary = transform(buffers, n, lanes, Turns.of(n))
+    real, imaginary = transform(buffers, n, lanes, TwiddleFactors.of(n))
     assert real + 1j * imaginary == pytest.approx(fft.fft(x + 1j * y, axis=0), abs=1.0e-12)
 
 
 def test_other_factors_than_two_and_three_are_refused():
     with pytest.raises(BadInput, match='70 values'):
-        Turns.of(70)
+        TwiddleFactors.of(70)
 
 
 @pytest.mark.parametrize('rows', [5, 24])
@@ -249,7 +249,7 @@ def test_a_symmetric_flow_stays_symmetric():
 
 
 def weighted_added_mass(engine: Conformal) -> np.ndarray:
-    return np.diff(engine.columns)[:, None] * engine.resistance * (2.0 * engine.dt / 3.0)
+    return np.diff(engine.columns)[:, None] * engine.impedance * (2.0 * engine.dt / 3.0)
 
 
 def test_added_mass_is_symmetric_and_that_of_a_strip(engine):
@@ -273,7 +273,7 @@ def test_load_is_affine_in_the_wall_velocity(engine):
     velocity = 1.0e-3 * np.sin(np.pi * np.arange(len(still.jump)) / len(still.jump))
     moved = engine.correct(still, velocity)
     change = engine.loads(moved).jump - still.jump
-    assert change == pytest.approx(-engine.resistance @ velocity, abs=1.0e-9)
+    assert change == pytest.approx(-engine.impedance @ velocity, abs=1.0e-9)
 
 
 def test_unsteady_lift_converges_faster_than_first_order_in_time():

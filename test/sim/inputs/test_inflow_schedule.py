@@ -14,8 +14,8 @@ from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.conformal.frame import Frame
 from dewing_sim.fluid.conformal.metric import metric_and_flux
-from dewing_sim.fluid.inflow import Onset
-from dewing_sim.inputs.inflow_schedule import SHAPES, Course, Encounter
+from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.inputs.inflow_schedule import SHAPES, Course, InflowSchedule
 from dewing_sim.rest import trim
 from dewing_sim.verification import unsteady
 from dewing_sim.verification.rigid_flow import parabola
@@ -33,11 +33,11 @@ def conformal(dt=0.01, alpha=ALPHA):
     return engines.make('conformal', 'realtime', 2500.0, alpha, dt)
 
 
-def lift(fluid, onset_at, steps):
+def lift(fluid, inflow_at, steps):
     wall = Wall.flat(fluid.columns)
     flow = fluid.rest(wall, 0.1)
     for step in range(1, steps + 1):
-        flow = fluid.correct(fluid.predict(flow, wall, onset_at(step * fluid.dt)), wall.velocity)
+        flow = fluid.correct(fluid.predict(flow, wall, inflow_at(step * fluid.dt)), wall.velocity)
     return fluid.loads(flow).cl
 
 
@@ -60,24 +60,24 @@ def test_courses_start_and_end_where_they_say(shape, end):
 def test_nothing_is_a_steady_stream():
     case = parameters.load('paper')
     wing = Wing(case)
-    assert wing.encounter.is_steady
-    assert wing.encounter.at(1.0) == Onset(stream=np.exp(1j * ALPHA), incidence=ALPHA,
-                                           pivot=case.rigid_motion.pivot)
+    assert wing.inflow_schedule.is_steady
+    assert wing.inflow_schedule.at(1.0) == Inflow(stream=np.exp(1j * ALPHA), incidence=ALPHA,
+                                                  pivot=case.rigid_motion.pivot)
 
 
-def test_an_undisturbed_onset_changes_nothing():
+def test_an_undisturbed_inflow_changes_nothing():
     fluid = conformal()
     expected = lift(fluid, lambda time: None, 20)
-    assert lift(fluid, Encounter(ALPHA).at, 20) == pytest.approx(expected, rel=1.0e-12)
+    assert lift(fluid, InflowSchedule(ALPHA).at, 20) == pytest.approx(expected, rel=1.0e-12)
 
 
 def test_heave_is_the_opposite_of_a_vertical_gust():
     fluid = conformal()
-    heaving = Encounter(ALPHA, heave=0.05, motion_course=Course('ramp', 0.0, 0.5))
+    heaving = InflowSchedule(ALPHA, heave=0.05, motion_course=Course('ramp', 0.0, 0.5))
 
     def gust_at(time):
-        onset = heaving.at(time)
-        return dataclasses.replace(onset, pivot_acceleration=0.0)
+        inflow = heaving.at(time)
+        return dataclasses.replace(inflow, pivot_acceleration=0.0)
 
     assert lift(fluid, gust_at, 60) == lift(fluid, heaving.at, 60)
     assert lift(fluid, heaving.at, 25) < lift(fluid, lambda time: None, 25)
@@ -85,8 +85,8 @@ def test_heave_is_the_opposite_of_a_vertical_gust():
 
 @pytest.mark.parametrize('shape', ['ramp', 'sine'])
 def test_a_frame_adds_the_acceleration_of_its_points(shape):
-    moving = Encounter(0.1, heave=0.2, pitch=0.3, pivot=0.25,
-                       motion_course=Course(shape, 0.0, 2.0))
+    moving = InflowSchedule(0.1, heave=0.2, pitch=0.3, pivot=0.25,
+                            motion_course=Course(shape, 0.0, 2.0))
     start, speed, step = 0.7 + 0.02j, 0.1 - 0.2j, 1.0e-4
 
     def place(time):            # in axes at rest along the chord at the incidence 0.1
@@ -96,10 +96,10 @@ def test_a_frame_adds_the_acceleration_of_its_points(shape):
         return 1j * heave * np.exp(0.1j) + (within - 0.25) * np.exp(-1j * pitch)
 
     total = (place(0.8 + step) - 2.0 * place(0.8) + place(0.8 - step)) / step**2
-    onset = moving.at(0.8)
-    found = onset.frame_acceleration(np.array([[start.real, start.imag]]),
-                                     np.array([[speed.real, speed.imag]]))
-    turned = total * np.exp(1j * (onset.incidence - 0.1))
+    inflow = moving.at(0.8)
+    found = inflow.frame_acceleration(np.array([[start.real, start.imag]]),
+                                      np.array([[speed.real, speed.imag]]))
+    turned = total * np.exp(1j * (inflow.incidence - 0.1))
     assert complex(*found[0]) == pytest.approx(turned, rel=1.0e-4)
 
 
@@ -109,9 +109,9 @@ def test_sudden_acceleration_meets_the_exact_added_mass():
     rest = fluid.rest(wall, 0.0)
     dx = np.diff(fluid.columns)
     x = fluid.columns[1:] - 0.5 * dx
-    still = fluid.predict(rest, wall, Onset(0.0)).jump
-    heave = fluid.predict(rest, wall, Onset(0.0, stream_rate=-1.0j)).jump - still
-    pitch = fluid.predict(rest, wall, Onset(0.0, pitch_acceleration=1.0, pivot=0.5)).jump - still
+    still = fluid.predict(rest, wall, Inflow(0.0)).jump
+    heave = fluid.predict(rest, wall, Inflow(0.0, stream_rate=-1.0j)).jump - still
+    pitch = fluid.predict(rest, wall, Inflow(0.0, pitch_acceleration=1.0, pivot=0.5)).jump - still
     assert np.sum(heave * dx) == pytest.approx(-np.pi / 4.0, rel=2.0e-3)
     assert np.sum(pitch * dx) == pytest.approx(0.0, abs=1.0e-6)
     assert np.sum(pitch * (x - 0.5) * dx) == pytest.approx(np.pi / 128.0, rel=5.0e-3)
@@ -121,7 +121,7 @@ def test_turning_moves_the_grid_as_a_rigid_body():
     fluid = conformal()
     grid, mapping = fluid.grid, fluid.geometry.mapping
     m = mapping.follow(parabola(grid.columns, 0.03, 0.0).height, mapping.flat())
-    frame = Frame.of(Onset(1.0, pitch_rate=-2.0, pivot=0.3), grid)
+    frame = Frame.of(Inflow(1.0, pitch_rate=-2.0, pivot=0.3), grid)
     pivot = 0.3 * (np.arange(len(m.shape)) == 0)
     _, g_v, g_u = metric_and_flux(fluid.solver.exterior, m, m.shape - pivot, m.scale)
     flux = 2.0j * (g_v + 1j * g_u)                      # V + i U of turning at the rate 2
@@ -135,14 +135,14 @@ def test_turning_moves_the_grid_as_a_rigid_body():
 
 
 def test_a_lasting_pitch_is_an_angle_of_attack():
-    dt, pitched = 0.02, Encounter(np.radians(2.0), pitch=np.radians(2.0), pivot=0.25,
-                                  motion_course=Course('ramp', 0.0, 2.0))
+    dt, pitched = 0.02, InflowSchedule(np.radians(2.0), pitch=np.radians(2.0), pivot=0.25,
+                                       motion_course=Course('ramp', 0.0, 2.0))
     turned = lift(conformal(dt, np.radians(2.0)), pitched.at, 1000)
     assert turned == pytest.approx(lift(conformal(dt), lambda time: None, 1000), rel=0.01)
 
 
 def test_oscillations_on_either_engine_agree():
-    found = [unsteady.response(unsteady.EncounterRun(
+    found = [unsteady.response(unsteady.UnsteadyRun(
         engine, 'fast', 'pitch', 'sine', 2.0 * np.pi / unsteady.OMEGA, 7.0)())
         for engine in ('conformal', 'finite_volume')]
     assert abs(found[0] - found[1]) < 0.02 * abs(found[0])
@@ -152,9 +152,9 @@ def test_axes_that_accelerate_load_the_membrane_with_its_inertia():
     wing = Wing(parameters.load('paper', changes=CONFORMAL))
     position = wing.membrane.rest_position
     still = np.zeros(len(wing.fluid.columns) - 1)
-    plain, heaved = (interface.Load(wing.fluid, wing.membrane, still, still, 0.0, onset)(
-        position, np.zeros_like(position)) for onset in (
-            None, Onset(1.0, pivot_acceleration=0.5j)))
+    plain, heaved = (interface.Load(wing.fluid, wing.membrane, still, still, 0.0, inflow)(
+        position, np.zeros_like(position)) for inflow in (
+            None, Inflow(1.0, pivot_acceleration=0.5j)))
     assert heaved[:, 0] == pytest.approx(plain[:, 0])
     assert (heaved - plain)[:, 1] == pytest.approx(-0.5 * wing.membrane.mass)
 
@@ -192,8 +192,9 @@ def test_a_course_that_is_not_known_is_refused():
 
 
 def test_a_gust_along_the_stream_raises_the_lift_with_the_square_of_the_speed():
-    dt, gust = 0.02, Encounter(ALPHA, gust=0.2, gust_course=Course('ramp', 0.0, 1.0))
-    calm, fast = (lift(conformal(dt), encounter.at, 900) for encounter in (Encounter(ALPHA), gust))
+    dt, gust = 0.02, InflowSchedule(ALPHA, gust=0.2, gust_course=Course('ramp', 0.0, 1.0))
+    calm, fast = (lift(conformal(dt), schedule.at, 900)
+                  for schedule in (InflowSchedule(ALPHA), gust))
     assert fast == pytest.approx(1.44 * calm, rel=0.04)
 
 
