@@ -4,6 +4,7 @@
 
 import dataclasses
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 import yaml
@@ -57,7 +58,7 @@ def _read(path: str | Path) -> tuple[State, Case]:
                 values[field.name] = _value(arrays[field.name])
     except FileNotFoundError:
         raise BadInput(f'{path}: no such file') from None
-    except (OSError, ValueError, KeyError, EOFError) as error:
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
         raise BadInput(f'{path}: not a saved wing state ({error})') from None
     return State(**values), case
 

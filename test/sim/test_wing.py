@@ -64,7 +64,7 @@ def test_voltage_lowers_the_tension_and_raises_mean_camber_and_lift(fast, fast_r
 
 RESTART = """
 import sys
-from dewing_sim import checkpoint
+from dewing_sim.rest import checkpoint
 from dewing_sim.wing import Wing
 path, out = sys.argv[1:]
 wing, state = Wing(checkpoint.load_case(path)), checkpoint.load(path)
@@ -88,24 +88,6 @@ def test_twenty_steps_saved_and_continued_elsewhere_equal_forty_bit_for_bit(
             assert np.array_equal(value, theirs[name]), (part, name)
     direct, restarted = fast.observe(states[-1]), fast.observe(continued)
     assert all(getattr(direct, name) == getattr(restarted, name) for name in SCALARS)
-
-
-def test_rest_is_cached_for_its_case_and_recomputed_when_the_cache_is_broken(
-        tmp_path, monkeypatch):
-    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
-    wing = Wing(parameters.load('paper', changes={**FAST, 'numerics.trim_time': 0.2}))
-    calls = []
-    first = wing.rest(lambda done, total: calls.append(done))
-    path, = (tmp_path / 'dewing').glob('rest-*.npz')
-    again = Wing(wing.case).rest(lambda done, total: calls.append(-done))
-    assert all(done > 0 for done in calls)
-    assert np.array_equal(first.flow.u, again.flow.u)
-    path.write_bytes(b'broken')
-    assert np.array_equal(wing.rest().flow.u, first.flow.u)
-    other = Wing(parameters.replace(wing.case, {'actuation.voltage': 300.0}))
-    assert trim.fingerprint(other) != trim.fingerprint(wing)
-    undisturbed = Wing(parameters.replace(wing.case, {'disturbance.pressure': 0.015}))
-    assert trim.fingerprint(undisturbed) == trim.fingerprint(wing)
 
 
 @pytest.mark.parametrize('v_squared', [-1.0, np.nan, np.inf])
@@ -133,15 +115,3 @@ def test_a_file_that_is_no_state_is_refused(tmp_path):
     np.savez(path, a=1)
     with pytest.raises(BadInput, match='not a saved wing state'):
         checkpoint.load(path)
-
-
-def test_rest_states_depend_on_every_module_that_computes_them():
-    code = ('import sys, dewing_sim.rest.trim, dewing_sim.rest.passive\n'
-            'names = (name.split(".") for name in sys.modules)\n'
-            'print(*{name[1] for name in names if name[0] == "dewing_sim" and name[1:]})')
-    loaded = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                            check=True).stdout.split()
-    # Files, checks and how numba compiles; `fluid` and `structure` are taken as a whole.
-    others = {'checkpoint', 'compilation', 'errors', 'files', 'fluid', 'parameters', 'plant',
-              'schema', 'structure'}
-    assert set(loaded) - others == set(trim.SOLVER)
