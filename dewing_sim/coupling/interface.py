@@ -5,7 +5,6 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numba
 import numpy as np
 
 from dewing_sim.coupling import transfer
@@ -14,6 +13,7 @@ from dewing_sim.coupling.transfer import Load
 from dewing_sim.errors import NotConverged, RunFailed
 from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.machine.kernels import checked_kernel
 from dewing_sim.structure.dynamics.band import LowRank
 from dewing_sim.structure.dynamics.step import Motion, Operator, Structure
 
@@ -90,7 +90,7 @@ def _coasting(fluid: Fluid, structure: Structure, motion: Motion) -> np.ndarray:
         motion.position, motion.velocity, motion.position_before, motion.velocity_before)))
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def shape_change(after, before):
     """Return the largest change of height relative to the largest deflection."""
     change, deflection = 0.0, FLAT

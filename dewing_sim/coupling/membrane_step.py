@@ -10,10 +10,10 @@ one.
 import math
 from functools import lru_cache
 
-import numba
 import numpy as np
 
 from dewing_sim.coupling.transfer import Load, add_load
+from dewing_sim.machine.kernels import kernel
 from dewing_sim.structure.dynamics.band import solve
 from dewing_sim.structure.dynamics.step import Motion, Operator, Step, Structure
 from dewing_sim.structure.membrane import Membrane
@@ -70,7 +70,7 @@ def _curve(membrane: Membrane, v_squared: float) -> TensionCurve | None:
     return TensionCurve.of(membrane.sheet, membrane.prestretch, v_squared)
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def _iterated(position, tension, now, before, velocity_now, velocity_before, mass, dt, damping,
               columns, jump, reference, impedance, uniform, factors, row, column, value, answer):
     """Return the next position and the largest correction."""
@@ -96,7 +96,7 @@ def _iterated(position, tension, now, before, velocity_now, velocity_before, mas
     return force, size
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def _add_pull(position, tension, force):
     """Add the pull of the elements on their nodes (n + 1, 2)."""
     for k in range(tension.size):

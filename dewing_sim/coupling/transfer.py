@@ -9,15 +9,15 @@ sum_i dx_i jump_i w_i = sum_k f_k . velocity_k.
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from dewing_sim.fluid.base import Fluid
 from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.machine.kernels import checked_kernel, kernel
 from dewing_sim.structure.dynamics.step import Structure
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def overlaps(columns, position):
     """Return element and column of the overlaps, and their widths as shared by the nodes (k, 2).
 
@@ -42,7 +42,7 @@ def overlaps(columns, position):
     return place[:k], width[:k]
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def column_velocity(columns, position, velocity, place, width):
     """Return the column averages of Y_t = v_y - Y_x v_x, the rise of the wall at fixed x.
 
@@ -62,7 +62,7 @@ def column_velocity(columns, position, velocity, place, width):
     return w
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def add_nodal_force(position, jump, place, width, force):
     """Add to ``force`` (n + 1, 2) that of column pressure jumps, normal to the elements."""
     for k in range(place.shape[0]):
@@ -76,7 +76,7 @@ def add_nodal_force(position, jump, place, width, force):
         force[i + 1, 1] += end
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def add_load(columns, position, velocity, jump, reference, impedance, uniform, force):
     """Add to ``force`` (n + 1, 2) that of a `Load` whose columns moved with ``reference``."""
     place, width = overlaps(columns, position)
@@ -91,7 +91,7 @@ def add_load(columns, position, velocity, jump, reference, impedance, uniform, f
     add_nodal_force(position, total, place, width, force)
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def wall(columns, position, velocity):
     """Return the heights at the column faces, the edges' beyond them, and column velocities."""
     height = np.empty(columns.size)
@@ -107,7 +107,7 @@ def wall(columns, position, velocity):
     return height, column_velocity(columns, position, velocity, place, width)
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def coasting_velocity(columns, position, velocity, position_before, velocity_before):
     """Return the column velocities (4 w_n - w_n-1) / 3 of a BDF2 step without acceleration."""
     w = column_velocity(columns, position, velocity, *overlaps(columns, position))
@@ -118,7 +118,7 @@ def coasting_velocity(columns, position, velocity, position_before, velocity_bef
     return w
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def _nodal_load(columns, position, velocity, jump, reference, impedance, uniform):
     force = np.zeros(position.shape)
     add_load(columns, position, velocity, jump, reference, impedance, uniform, force)

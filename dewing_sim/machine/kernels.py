@@ -10,18 +10,58 @@ made for each line.  Arrays are not exchanged by name in a loop; two rows of one
 """
 
 import math
+from types import FunctionType
+from typing import Any, Callable
 
 import numba
 import numpy as np
+from numba.core import sigutils
+from numba.core.ccallback import CFunc
+from numba.core.dispatcher import Dispatcher
+from numba.extending import register_jitable
+
+from dewing_sim.machine import content
+from dewing_sim.machine.kernel_cache import KernelCache
 
 PAGE = 512                  # doubles in 4 KB
 
+
+def compiled(**options: Any) -> Callable[[FunctionType], Any]:
+    """Return a decorator that compiles with ``options`` of numba, and keeps the result on disk."""
+    def decorate(function: FunctionType) -> Any:
+        made = numba.njit(**options)(function)
+        if isinstance(made, Dispatcher):        # not so under NUMBA_DISABLE_JIT
+            made._cache = KernelCache(function, made.targetoptions)
+        return made
+    return decorate
+
+
 # Without error_model='numpy' every division carries a branch and no loop becomes SIMD.
-kernel = numba.njit(cache=True, error_model='numpy')
+kernel = compiled(error_model='numpy')
+# A division by zero raises.
+checked_kernel = compiled()
+# Sums become SIMD only where they may be added up in another order.
+summing_kernel = compiled(error_model='numpy', fastmath={'reassoc', 'nsz'})
 # A part of one kernel. Compiled by itself, it would be compiled once more within its caller.
 stage = numba.njit(inline='always', error_model='numpy')
-# Sums become SIMD only where they may be added up in another order.
-summing_kernel = numba.njit(cache=True, error_model='numpy', fastmath={'reassoc', 'nsz'})
+# A part of several kernels: compiled once in each that calls it, and not kept by itself.
+part = numba.njit(error_model='numpy')
+
+
+def formula(function: FunctionType) -> FunctionType:
+    """Let a function be plain in Python, and compiled inside what is compiled."""
+    options = {'error_model': 'numpy'}
+    setattr(function, content.OPTIONS, options)
+    return register_jitable(**options)(function)
+
+
+def c_function(function: FunctionType, signature: Any) -> CFunc:
+    """Compile for other compiled code to call by address; keep the result on disk."""
+    options = {'error_model': 'numpy'}
+    made = CFunc(function, sigutils.normalize_signature(signature), locals={}, options=options)
+    made._cache = KernelCache(function, options)
+    made.compile()
+    return made
 
 
 def scratch(count: int, *shape: int) -> list[np.ndarray]:

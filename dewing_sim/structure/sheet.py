@@ -12,11 +12,11 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.machine.kernels import kernel
 from dewing_sim.scales import Scales
 from dewing_sim.structure.material.elastomer import (
     VACUUM_PERMITTIVITY,
@@ -33,7 +33,7 @@ SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
 NO_OVERSTRESS = Overstress(0.0, np.zeros((2, 0)))
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps):
     """Return tau_1, tau_3, the moduli d tau_i / d e_k for ik = 11, 13, 33, and 2 dW/dI1."""
     j = l1 * l2 * l3
@@ -53,7 +53,7 @@ BALANCED, _LOCKED, _PULLED_IN = 0, 1, 2
 NEARLY_BALANCED = 1.0e-8    # logarithm of the thickness stretch
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, mu, jm, bulk, eps):
     """Solve tau_3 = 0 for l_3; return tau_1, d tau_1/d e_1, d tau_1/d field_squared, l_3, status.
 
@@ -77,7 +77,7 @@ def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, mu, jm, bulk, 
     return t1, c11, 0.0, l3, _PULLED_IN
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
     """Fill rows tension, its slopes in stretch and V^2, thickness; return status and element.
 

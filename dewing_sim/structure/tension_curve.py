@@ -5,10 +5,10 @@
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from dewing_sim.errors import Diverged
+from dewing_sim.machine.kernels import kernel
 from dewing_sim.structure.sheet import Sheet
 
 LOWEST, HIGHEST = 0.98, 1.10    # of the prestretch
@@ -53,7 +53,7 @@ class TensionCurve:
         return _along(position, stretch_per_length, self.middle, self.half, self.differences)
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def _along(position, stretch_per_length, middle, half, differences):
     n, last = stretch_per_length.size, differences.size - 1
     place, tension = np.empty(n), np.empty(n)

@@ -21,7 +21,7 @@ import numpy as np
 from numba import types
 
 from dewing_sim.errors import BadInput
-from dewing_sim.machine.kernels import kernel, scratch
+from dewing_sim.machine.kernels import c_function, kernel, part, scratch
 
 RADICES = (3, 2, 4)         # in the order of the stages: the last has the shortest loops
 SIN_3 = np.sin(np.pi / 3.0)
@@ -29,7 +29,6 @@ SYMBOL = 'dewing_stockham'
 REALS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
 SIGNATURE = types.int64(REALS, REALS, REALS, REALS, types.int64, types.int64, INTEGERS,
                         types.int64, REALS, REALS)
-butterfly = numba.njit(error_model='numpy')
 _stockham = types.ExternalFunction(SYMBOL, SIGNATURE)
 
 
@@ -96,7 +95,7 @@ def _compile() -> object:
     Called as other kernels are, they would be compiled into each of their callers and into the
     callers of these, which takes half a minute.
     """
-    compiled = numba.cfunc(SIGNATURE, cache=True, error_model='numpy')(_stages)
+    compiled = c_function(_stages, SIGNATURE)
     llvmlite.binding.add_symbol(SYMBOL, compiled.address)
     return compiled
 
@@ -126,7 +125,7 @@ def _stages(re, im, next_re, next_im, n, lanes, radices, stages, cos, sin):
     return stages
 
 
-@butterfly
+@part
 def _join_2(x, y, next_x, next_y, cos, sin):
     m, _, w = x.shape
     for k in range(m):
@@ -139,7 +138,7 @@ def _join_2(x, y, next_x, next_y, cos, sin):
             next_y[1, k, t] = y[k, 0, t] - v
 
 
-@butterfly
+@part
 def _join_3(x, y, next_x, next_y, cos, sin):
     m, _, w = x.shape
     for k in range(m):
@@ -158,7 +157,7 @@ def _join_3(x, y, next_x, next_y, cos, sin):
             next_y[2, k, t] = mean_y + odd_x
 
 
-@butterfly
+@part
 def _join_4(x, y, next_x, next_y, cos, sin):
     m, _, w = x.shape
     for k in range(m):

@@ -10,11 +10,12 @@ written out, so that no BLAS or thread changes a bit of the result.
 import math
 from dataclasses import dataclass, replace
 
-import numba
 import numpy as np
 
+from dewing_sim.machine.kernels import checked_kernel, kernel
 
-@numba.njit(cache=True)
+
+@checked_kernel
 def full(band):
     """Return the full matrix of a band (2 w + 1, m), in the layout of `solve_banded`."""
     width, m = band.shape[0] // 2, band.shape[1]
@@ -25,7 +26,7 @@ def full(band):
     return matrix
 
 
-@numba.njit(cache=True, error_model='numpy')
+@kernel
 def factorise(band):
     """Return L D L^T in rows (m, w + 1) by columns of L: 1 / D, then L below the diagonal."""
     width, m = band.shape[0] // 2, band.shape[1]
@@ -45,7 +46,7 @@ def factorise(band):
     return factors
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def substitute(factors, rows):
     """Replace each right-hand side in ``rows`` (k, m) by its solution."""
     m, width = factors.shape[0], factors.shape[1] - 1
@@ -65,7 +66,7 @@ def substitute(factors, rows):
             rows[k, column] = value
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def solve(factors, row, column, value, answer, right):
     """Replace ``right`` (1, m) by x - answer^T basis^T x, with x the solution for the band alone.
 

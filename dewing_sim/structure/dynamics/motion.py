@@ -4,11 +4,12 @@
 
 from dataclasses import dataclass, field
 
-import numba
 import numpy as np
 
+from dewing_sim.machine.kernels import checked_kernel
 
-@numba.njit(cache=True)
+
+@checked_kernel
 def _combined(x, y, z, a, b, c, scale):
     """Return (a x + b y + c z) scale for arrays (nodes, 2)."""
     result = np.empty(x.shape)

@@ -20,7 +20,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
+
+from dewing_sim.machine.kernels import formula
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12     # F/m, CODATA 2018
 
@@ -37,14 +38,14 @@ class Slopes(NamedTuple):
     yc: float
 
 
-@register_jitable(error_model='numpy')
+@formula
 def energy(i1, j, y_squared, mu, jm, bulk, eps):
     """Return W."""
     room = 1.0 - (i1 * j ** (-2.0 / 3.0) - 3.0) / jm
     return -0.5 * mu * jm * np.log(room) + bulk * (j - 1.0) ** 2 - 0.5 * eps * y_squared / j
 
 
-@register_jitable(error_model='numpy')
+@formula
 def gent(i1bar, mu, jm):
     """Return the first and second derivative of the Gent energy in I1bar."""
     room = jm - (i1bar - 3.0)
@@ -52,7 +53,7 @@ def gent(i1bar, mu, jm):
     return first, first / room
 
 
-@register_jitable(error_model='numpy')
+@formula
 def slopes(i1, j, y_squared, mu, jm, bulk, eps):
     """Return the factors of the derivatives of W at I1, J and Y^2."""
     scale = np.exp(np.log(j) / -1.5)        # twice as fast as a power
@@ -70,13 +71,13 @@ def slopes(i1, j, y_squared, mu, jm, bulk, eps):
         electric)
 
 
-@register_jitable(error_model='numpy')
+@formula
 def stress(s, f, c, y):
     """Return dW/dx from f = d(I1)/dx / 2, c = dJ/dx, y = d(Y^2)/dx / 2."""
     return s.f * f + s.c * c + s.y * y
 
 
-@register_jitable(error_model='numpy')
+@formula
 def modulus(s, f, c, y, f_other, c_other, y_other, f_both, c_both, y_both):
     """Return d2W/dx dx' from the derivatives by x, by x' and the second derivatives by both.
 
@@ -87,7 +88,7 @@ def modulus(s, f, c, y, f_other, c_other, y_other, f_both, c_both, y_both):
             + s.cc * c * c_other + s.yc * (y * c_other + c * y_other))
 
 
-@register_jitable(error_model='numpy')
+@formula
 def deviatoric_stress(c11, c22, c12, c33, mu, jm):
     """Return S_11, S_22, S_12 (second Piola-Kirchhoff) of the Gent energy.
 

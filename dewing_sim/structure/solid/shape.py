@@ -5,13 +5,14 @@
 `solid_element` explains m, n, g and the strains A, B, D, p, q, G.
 """
 
-import numba
 import numpy as np
 
+from dewing_sim.machine.kernels import compiled
+
 # Sums may be reordered and divisions by zero need no check: twice as fast.
-_OPTIONS = {'cache': True, 'error_model': 'numpy', 'fastmath': {'contract', 'reassoc', 'arcp'}}
-KERNEL = numba.njit(**_OPTIONS)
-KERNEL_INSIDE = numba.njit(inline='always', **_OPTIONS)
+_OPTIONS = {'error_model': 'numpy', 'fastmath': {'contract', 'reassoc', 'arcp'}}
+KERNEL = compiled(**_OPTIONS)
+KERNEL_INSIDE = compiled(inline='always', **_OPTIONS)
 # Coefficients of b0, t0, b1, t1 in m L, n H, g.
 NODES = np.array([[-0.5, -0.5, 0.5, 0.5], [-0.5, 0.5, -0.5, 0.5], [0.5, -0.5, -0.5, 0.5]])
 

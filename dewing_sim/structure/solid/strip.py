@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mesh of a strip along the chord: lengths, masses, and its edges as the flow sees them."""
 
-import numba
 import numpy as np
 
+from dewing_sim.machine.kernels import checked_kernel
 from dewing_sim.structure.sheet import Sheet
 
 GROWTH = 1.5                # of element lengths away from the edges
@@ -41,7 +41,7 @@ def straight_edges(x: np.ndarray, layer: float) -> tuple[int, np.ndarray, np.nda
     return inner, np.stack([1.0 - left, left], axis=1), np.stack([1.0 - right, right], axis=1)
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def mid_line(nodal, share):
     """Return the weighted means (n+1, 2) of bottom and top, ``nodal`` (2(n+1), 2)."""
     line = np.empty((share.shape[0], 2))
@@ -52,7 +52,7 @@ def mid_line(nodal, share):
     return line
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def to_nodes(force, share):
     """Return the nodal forces (2(n+1), 2) of forces on the mean line, the transpose."""
     nodal = np.empty((2 * share.shape[0], 2))
@@ -63,7 +63,7 @@ def to_nodes(force, share):
     return nodal
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def straighten(line, inner, left, right):
     """Put the first and last ``inner`` stations on the lines of `straight_edges`, in place."""
     last = line.shape[0] - 1
@@ -76,7 +76,7 @@ def straighten(line, inner, left, right):
             line[first + k, axis] = right[k, 0] * end + right[k, 1] * end_start
 
 
-@numba.njit(cache=True)
+@checked_kernel
 def gather(force, inner, left, right):
     """Move forces from the first and last ``inner`` stations, in place: the transpose."""
     last = force.shape[0] - 1
