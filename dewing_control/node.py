@@ -15,7 +15,7 @@ from std_srvs.srv import SetBool
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial.closed_loop import controller, same_memory
 from dewing_sim import parameters
-from dewing_sim.errors import BadInput
+from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import Identity
 from dewing_sim.ros import harness, messages, qos
 from dewing_sim.ros.status import Status
@@ -26,20 +26,25 @@ class ControllerNode(Node):
 
     A repeated stamp repeats the answer; an earlier one means that the simulator began anew, and
     so does the controller. Settings may change while it runs; the controller keeps what it
-    remembers, or begins at the present V^2 where its memory has to be of another form. Disabled,
-    it answers zero.
+    remembers, or begins at the present V^2 where its memory has to be of another form. A change
+    that the law cannot be designed with is refused, and the law before it goes on. Disabled, it
+    answers zero.
     """
 
     def __init__(self, parameters: Mapping[str, Any] | None = None, **options):
         super().__init__('controller', namespace='dewing', **harness.overrides(parameters),
                          **options)
         self.settings = settings_of(self)
+        self._declared = _names(self.settings)
         self.identity: Identity | None = None
         self._law, self._memory = None, None
         self._stamp, self._v_squared = -1, 0.0
         self._enabled, self._begun, self._answers, self._saturated = True, 0, 0, 0
+        self.exit_status: int | None = None
+        self.reason = ''
         self.status = Status(self, 'waiting for the case', self._values)
         self.add_on_set_parameters_callback(self._on_parameters)
+        self.add_post_set_parameters_callback(self._declare_anew)
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
         self.create_subscription(JointState, 'measurement', self._on_measurement, qos.LATEST)
@@ -67,6 +72,10 @@ class ControllerNode(Node):
             except BadInput as error:
                 self.status.set(messages.WARN, str(error))
                 return
+            except RunFailed as error:              # of a law from outside
+                self.exit_status, self.reason = 1, str(error)
+                self.status.set(messages.ERROR, self.reason)
+                return
             self._stamp = stamp
             self._say_running()
         qos.publish(self._command, messages.command(self._v_squared, message.header.stamp))
@@ -85,16 +94,26 @@ class ControllerNode(Node):
 
     def _on_parameters(self, given):
         settings, answer = messages.changed(self.settings, given)
-        if answer.successful and self.identity is not None:
+        if settings == self.settings:
+            return answer
+        if self.identity is not None:
             try:
                 self._law = controller(settings, self.identity)
             except BadInput as error:
                 return SetParametersResult(successful=False, reason=str(error))
             if not same_memory(self.settings, settings):
                 self._memory = self._law.start(self._v_squared)
-        if answer.successful:
-            self.settings = settings
+        self.settings = settings
         return answer
+
+    def _declare_anew(self, _given):
+        """Declare the parameters of a law from outside that came, drop those of one that went."""
+        names = _names(self.settings)
+        gone, come, self._declared = self._declared - names, names - self._declared, names
+        for name in gone:
+            self.undeclare_parameter(name)
+        if come:
+            messages.declare(self, self.settings, read_only=False)
 
     def _on_enable(self, request, response):
         self._enabled = request.data
@@ -113,7 +132,12 @@ class ControllerNode(Node):
 
     def interrupt(self):
         """Say goodbye in the diagnostics."""
-        self.status.set(messages.WARN, 'the controller was asked to stop')
+        if self.exit_status is None:
+            self.status.set(messages.WARN, 'the controller was asked to stop')
+
+
+def _names(settings: ControllerSettings) -> set[str]:
+    return {name for name, _, _ in parameters.leaves(settings)}
 
 
 def settings_of(node: Node) -> ControllerSettings:

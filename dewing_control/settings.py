@@ -1,108 +1,80 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""The schema of a controller's parameters; gains and set-points are normalised.
+"""The schema of a controller's parameters: what is common to all laws, and a section for each.
 
-Camber is measured in passive cambers a_ref and V^2 in V_L^2, its value at the loss of tension;
-the wing's identity supplies both.
+The sections stand in the files of the laws, see `law.registry`. Those of dewing's own laws are
+always there, and lie idle where the kind does not use them; those of a law from outside are
+there while it is the kind.
 """
 
-from dataclasses import dataclass
+import dataclasses
+import functools
+from collections.abc import Mapping
+from typing import Any
 
-from dewing_sim.parameters import choice, count, real, text
-
-KINDS = ('pid', 'periodic', 'lqg', 'mpc')
-
-
-@dataclass(frozen=True)
-class Reference:
-    """What the camber shall follow."""
-
-    output: str = choice('camber fed back', 'camber_mean', 'camber_max')
-    target: float = real('-', 'wanted camber as a multiple of the passive one', 0.0, 10.0)
-    rate: float = real('1/s', 'largest rate of change of the reference', 1.0e-6, 1.0e6)
+from dewing_control.law import registry
+from dewing_control.law.base import Command, Law, Reference
+from dewing_sim import parameters
+from dewing_sim.errors import BadInput
+from dewing_sim.parameters import choice, text
 
 
-@dataclass(frozen=True)
-class PidGains:
-    """PID of a/a_ref to V^2/V_L^2 (paper eq. 10)."""
+class _ByKind:
+    """Settings whose fields depend on their ``kind``; see `parameters.from_mapping`."""
 
-    kp: float = real('-', 'proportional gain', 0.0, 1.0e6)
-    ki: float = real('1/s', 'integral gain', 0.0, 1.0e9)
-    kd: float = real('s', 'derivative gain', 0.0, 1.0e6)
-    derivative_filter: float = real(
-        's', 'time constant of the derivative filter', 0.0, 1.0e3)
-    tracking_time: float = real(
-        's', 'time constant of the anti-windup back-calculation', 1.0e-9, 1.0e3)
+    @classmethod
+    def chosen(cls, mapping: Mapping) -> tuple[type, Mapping]:
+        """Return the schema for the kind in ``mapping``, and what of ``mapping`` is for it."""
+        kind = mapping.get('kind')
+        schema = ControllerSettings
+        if isinstance(kind, str) and registry.plugins.is_plugin(kind):
+            schema = _extended(kind, registry.of_kind(kind))
+        gone = _names(cls) - _names(schema)         # sections of the law it was before
+        return schema, {key: value for key, value in mapping.items() if key not in gone}
 
-
-@dataclass(frozen=True)
-class DisturbanceModel:
-    """What kinds periodic, lqg and mpc know of a periodic disturbance."""
-
-    frequency: float = real('Hz', 'fundamental frequency', 1.0e-3, 1.0e4)
-    harmonics: int = count('harmonics cancelled, from the fundamental up', 0, 20)
+    def __reduce__(self):
+        """Pickle the values; the class is made again where they are read."""
+        return parameters.from_mapping, (ControllerSettings, parameters.to_mapping(self))
 
 
-@dataclass(frozen=True)
-class Learning:
-    """Kind periodic: PID with learnt feed-forward."""
-
-    learning_rate: float = real(
-        '1/s', 'rate at which the phasors learn', 0.0, 1.0e4)
+def _names(schema: type) -> set[str]:
+    return {field.name for field in dataclasses.fields(schema)}
 
 
-@dataclass(frozen=True)
-class Estimator:
-    """Standard deviations a sample of the Kalman filter of kinds lqg and mpc; normalised."""
-
-    sensor_noise: float = real('-', 'noise of the measured camber, in a_ref', 1.0e-9, 1.0)
-    load_noise: float = real('-', 'white load on the membrane, in V_L^2', 0.0, 1.0e3)
-    drift: float = real('-', 'increments of the drifting load, in V_L^2', 1.0e-12, 1.0e3)
-    oscillation: float = real(
-        '-', 'increments of the phasors of the periodic load, in V_L^2', 1.0e-12, 1.0e3)
+def _own_sections() -> dict[str, type]:
+    """Return the sections of dewing's own laws by name; several laws may share one."""
+    return {name: section for law in registry.LAWS.values()
+            for name, section in law.sections.items()}
 
 
-@dataclass(frozen=True)
-class Regulator:
-    """Linear-quadratic regulator of kinds lqg and mpc."""
-
-    states: str = choice('model it is designed on: of the main mode or as identified',
-                         'fundamental', 'identified')
-    control_weight: float = real(
-        '-', 'cost rho of (V^2/V_L^2)^2 against that of (a/a_ref)^2', 1.0e-12, 1.0e6)
+def _with_model() -> str:
+    return ' and '.join(kind for kind, law in registry.LAWS.items() if law.needs_model)
 
 
-@dataclass(frozen=True)
-class Predictive:
-    """Kind mpc: what is predicted."""
-
-    horizon: float = real('s', 'time over which the bounds of V^2 are foreseen', 1.0e-6, 10.0)
-    moves: int = count('blocks of constant correction in the horizon', 1, 200)
-    rate_limit: float = real(
-        '1/s', 'largest rate of change of V^2/V_L^2', 1.0e-3, 1.0e9)
-
-
-@dataclass(frozen=True)
-class Command:
-    """How V^2 is issued."""
-
-    voltage_limit: float = real('V', 'largest voltage the controller asks for', 0.0, 1.0e5)
-    period_steps: int = count('steps of the plant in one control period', 1, 100000)
-    hold_steps: int = count(
-        'unusable measurements in a row answered with the last V^2, zero afterwards', 0, 1000000)
+ControllerSettings = dataclasses.make_dataclass('ControllerSettings', [
+    ('kind', str, choice('control law', *registry.LAWS, open=True)),
+    ('model', str, text(f'npz file of the identified model, for kinds {_with_model()}')),
+    ('reference', Reference), *_own_sections().items(), ('command', Command)],
+    bases=(_ByKind,), frozen=True, namespace={
+        '__module__': __name__,
+        '__doc__': 'All parameters of a controller; idle sections are those of other kinds.'})
 
 
-@dataclass(frozen=True)
-class ControllerSettings:
-    """All parameters of the controller; sections that its kind does not use lie idle."""
+@functools.cache
+def _extended(kind: str, law: type[Law]) -> type:
+    """Return `ControllerSettings` with the sections of a ``law`` from outside."""
+    known = {field.name: field.type for field in dataclasses.fields(ControllerSettings)}
+    for name, section in law.sections.items():
+        if known.get(name, section) is not section:
+            raise BadInput(f'kind = {kind!r}: its section {name} has the name of another; '
+                           f'taken are {", ".join(known)}')
+    return dataclasses.make_dataclass(
+        'ControllerSettings',
+        [item for item in law.sections.items() if item[0] not in known],
+        bases=(ControllerSettings,), frozen=True, namespace={
+            '__module__': __name__, '__doc__': f'All parameters of the law {kind}.'})
 
-    kind: str = choice('control law', *KINDS)
-    model: str = text('npz file of the identified model, for kinds lqg and mpc')
-    reference: Reference
-    pid: PidGains
-    disturbance_model: DisturbanceModel
-    periodic: Learning
-    estimator: Estimator
-    lqg: Regulator
-    mpc: Predictive
-    command: Command
+
+def value_of(settings: Any, name: str) -> Any:
+    """Return the parameter with the dotted ``name``."""
+    return functools.reduce(getattr, name.split('.'), settings)

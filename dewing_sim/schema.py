@@ -103,10 +103,14 @@ _FLOAT_HINT = ' (write it with a decimal point and a signed exponent, as in 1.0 
 def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section:
     """Build a schema instance from nested mappings with exactly its keys.
 
-    Raises `BadInput` for unknown or missing keys, wrong types and values out of range.
+    A schema whose fields depend on a value has a class method ``chosen(mapping)``, which returns
+    the schema to take and what of ``mapping`` is for it. Raises `BadInput` for unknown or missing
+    keys, wrong types and values out of range.
     """
     if not isinstance(mapping, Mapping):
         raise BadInput(f"{name or 'parameters'}: expected keys and values, got {mapping!r}")
+    if hasattr(schema, 'chosen'):
+        schema, mapping = schema.chosen(mapping)
     known = {field.name: field for field in dataclasses.fields(schema)}
     for key in mapping:
         if key not in known:
@@ -154,7 +158,7 @@ def replace(section: Section, changes: Mapping[str, Any]) -> Section:
         *path, last = name.split('.')
         target = mapping
         for key in path:
-            target = target.get(key) if isinstance(target, dict) else None
+            target = target.setdefault(key, {}) if isinstance(target, dict) else None
         if not isinstance(target, dict):
             raise BadInput(f"{name} is not a parameter; sections here: {', '.join(mapping)}")
         target[last] = value

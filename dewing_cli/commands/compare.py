@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compare controllers on the same wing: accuracy, voltage, energy, computing time.
 
-Open loop, the PID with the paper's gains, the tuned PID, LQG, learnt feed-forward and MPC run
-through disturbances, gusts, targets in and out of reach, sensor noise and wings that differ from
-the nominal one. Energies and powers are per metre of span.
+Open loop, the PID with the paper's gains, the tuned PID, LQG, learnt feed-forward, MPC and laws of
+your own (package.module:Name) run through disturbances, gusts, targets in and out of reach, sensor
+noise and wings that differ from the nominal one. Energies and powers are per metre of span.
 """
 
 import argparse
@@ -43,10 +43,13 @@ def run(arguments: argparse.Namespace) -> None:
     """Run the comparison, then write table, figure and metrics."""
     from pathlib import Path
 
-    from dewing_control.trial.scenarios import CONTROLLERS, QUICK, SCENARIOS
+    from dewing_control.settings import ControllerSettings
+    from dewing_control.trial.scenarios import QUICK, SCENARIOS
+    from dewing_sim import parameters
     scenarios = _chosen('--scenarios', arguments.scenarios, SCENARIOS,
                         QUICK if arguments.quick else tuple(SCENARIOS))
-    names = _chosen('--controllers', arguments.controllers, CONTROLLERS, CONTROLLERS)
+    settings = parameters.load(arguments.settings, ControllerSettings)
+    names = _controllers(arguments.controllers, settings.kind)
     duration = 0.4 if arguments.quick else options.within(
         '--duration', arguments.duration, 0.02, 100.0, 's')
     options.within('--jobs', arguments.jobs, 1, 64, 'processes')
@@ -55,7 +58,7 @@ def run(arguments: argparse.Namespace) -> None:
                               folder / 'compare.png', folder / 'model.npz', arguments.json)):
         check_free(path, arguments.force)
     with bar('comparing', 'scenarios', arguments.quiet) as show:
-        plan = _plan(arguments, folder, duration)
+        plan = _plan(arguments, settings, folder, duration)
         collected = _collect(plan, scenarios, names, arguments.jobs, show)
     _deliver(arguments, folder, collected)
 
@@ -69,9 +72,19 @@ def _chosen(option: str, text: str | None, known: Any, default: tuple) -> tuple:
     return tuple(text.split(','))
 
 
-def _plan(arguments: argparse.Namespace, folder: Any, duration: float) -> Any:
+def _controllers(text: str | None, kind: str) -> tuple:
+    """Return who is compared; laws from outside go by their ``kind``."""
+    from dewing_control.law.registry import of_kind
+    from dewing_control.trial.comparison import CONTROLLERS
+    from dewing_sim.plugins import is_plugin
+    outside = tuple(filter(is_plugin, [kind] if text is None else text.split(',')))
+    for name in outside:
+        of_kind(name)                       # a law that cannot be used stops it here
+    return _chosen('--controllers', text, (*CONTROLLERS, *outside), (*CONTROLLERS, *outside))
+
+
+def _plan(arguments: argparse.Namespace, settings: Any, folder: Any, duration: float) -> Any:
     from dewing_control.model.identified import identify
-    from dewing_control.settings import ControllerSettings
     from dewing_control.trial.comparison import Plan
     from dewing_sim import parameters, reduced
     from dewing_sim.build import build_wing
@@ -83,7 +96,7 @@ def _plan(arguments: argparse.Namespace, folder: Any, duration: float) -> Any:
         found = identify(built)
         folder.mkdir(parents=True, exist_ok=True)
         reduced.save(model, found)
-    settings = parameters.load(arguments.settings, ControllerSettings, {'model': model})
+    settings = parameters.replace(settings, {'model': model})
     return Plan(case, settings, built.identity, duration,
                 max(duration - AVERAGED, 0.5 * duration))
 

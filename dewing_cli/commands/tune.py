@@ -13,6 +13,7 @@ from typing import Any, Iterator
 
 from dewing_cli import options, results
 from dewing_cli.progress import bar
+from dewing_control.tuning.bounds import Bounds
 from dewing_sim.files import check_free, new_file
 
 FILES = ('controller.yaml', 'model.npz', 'metrics.json', 'bode.png', 'nyquist.png',
@@ -26,14 +27,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group('tuning')
     group.add_argument('--settings', default='controller', metavar='NAME|FILE',
                        help='settings to start from (default: controller)')
-    group.add_argument('--kind', metavar='KIND', help='pid, periodic, lqg or mpc')
+    group.add_argument('--kind', metavar='KIND',
+                       help='control law: its kind, or package.module:Name of your own')
     group.add_argument('--model', metavar='FILE',
                        help='npz of the identified model (default: identify)')
     for name, default, help in (
-            ('ms', 2.0, 'largest peak of the sensitivity'),
-            ('saturation', 0.01, 'largest share of the time with V^2 at zero'),
-            ('noise-gain', 100.0, 'largest gain from noise of a/a_ref to V^2/V_L^2'),
-            ('tension', 0.82, 'lower tension at which Ms holds as well, of that at rest')):
+            ('ms', Bounds.sensitivity, 'largest peak of the sensitivity'),
+            ('saturation', Bounds.saturation, 'largest share of the time with V^2 at zero'),
+            ('noise-gain', Bounds.noise_gain, 'largest gain from noise of a/a_ref to V^2/V_L^2'),
+            ('tension', Bounds.tension,
+             'lower tension at which Ms holds as well, of that at rest')):
         group.add_argument(f'--{name}', type=float, default=default, metavar='X',
                            help=f'{help} (default: {default:g})')
     options.add_results(parser, 'folder of the results (default: out/tune)')
@@ -56,6 +59,7 @@ def run(arguments: argparse.Namespace) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     reduced.save(folder / 'model.npz', model)
     metrics = _verify(arguments, built, model, design, judged)
+    metrics['printed'] = _printed(built, design, judged.settings, bounds)
     _write_settings(folder, judged.settings, arguments.force)
     results.write_json(folder / 'metrics.json', metrics, arguments.force)
     if arguments.json:
@@ -76,11 +80,12 @@ def _flat(metrics: dict, prefix: str = '') -> Iterator[tuple[str, Any]]:
 def _check(arguments: argparse.Namespace) -> tuple[Any, Any]:
     """Return settings and bounds, with every option checked before any work."""
     from dewing_control.settings import ControllerSettings
-    from dewing_control.tuning.tuning import Bounds
+    from dewing_control.tuning.tuning import ranges_of
     from dewing_sim import parameters
     options.load_case(arguments)
     changes = {'kind': arguments.kind} if arguments.kind else {}
     settings = parameters.load(arguments.settings, ControllerSettings, changes)
+    ranges_of(settings.kind)
     options.within('--duration', arguments.duration, 0.01, 100.0, 's')
     bounds = Bounds(options.within('--ms', arguments.ms, 1.05, 100.0, ''),
                     options.within('--saturation', arguments.saturation, 0.0, 1.0, ''),
@@ -124,18 +129,19 @@ def _verify(arguments, built, model, design, judged) -> dict[str, Any]:
             figure.savefig(file, format='png', dpi=120)
     return {'kind': judged.settings.kind, 'gains': _gains(judged.settings), **judged.report(),
             'wing': wing,
-            'wing_minus_model': verification.difference(run.camber, camber, run.dt),
-            'printed': _printed(built, design, judged.settings)}
+            'wing_minus_model': verification.difference(run.camber, camber, run.dt)}
 
 
 def _gains(settings: Any) -> dict[str, float]:
-    from dewing_control.tuning.tuning import RANGES, value_of
-    return {name: value_of(settings, name) for name in RANGES[settings.kind]}
+    from dewing_control.law.registry import of_kind
+    from dewing_control.settings import value_of
+    return {name: value_of(settings, name) for name in of_kind(settings.kind).ranges}
 
 
-def _printed(built: Any, design: Any, settings: Any) -> dict[str, Any]:
+def _printed(built: Any, design: Any, settings: Any, bounds: Bounds) -> dict[str, Any]:
     """Judge the gains of the paper as printed, and with 3000 times the derivative gain."""
-    from dewing_control.tuning.tuning import judge, pi_limit, printed_gains
+    from dewing_control.tuning.judge import judge
+    from dewing_control.tuning.printed import pi_limit, printed_gains
     from dewing_sim import parameters
     gains = printed_gains(built.identity)
     found = {'gains': gains, 'ki_limit_without_kd': pi_limit(design, gains['kp'])}
@@ -143,15 +149,16 @@ def _printed(built: Any, design: Any, settings: Any) -> dict[str, Any]:
         changes = {f'pid.{gain}': value for gain, value in gains.items()}
         changes |= {'kind': 'pid', 'pid.kd': factor * gains['kd']}
         found[name] = judge(parameters.replace(settings, changes), built.identity, design,
-                            design.at_tension(0.82)).report()
+                            design.at_tension(bounds.tension)).report()
     return found
 
 
 def _write_settings(folder: Path, settings: Any, overwrite: bool) -> None:
     import dataclasses
 
+    from dewing_control.law.registry import of_kind
     from dewing_sim import parameters
-    if settings.kind in ('lqg', 'mpc'):
+    if of_kind(settings.kind).needs_model:
         settings = dataclasses.replace(settings, model=str((folder / 'model.npz').resolve()))
     with new_file(folder / 'controller.yaml', overwrite) as file:
         file.write(parameters.to_yaml(settings).encode())

@@ -9,24 +9,18 @@ import numpy as np
 
 from dewing_cli.paper import experiments
 from dewing_cli.paper.result import Result, Tick
+from dewing_control.law.pid import Pid
 from dewing_control.model.design import Design
 from dewing_control.model.identified import CHANGES, OUTPUTS
-from dewing_control.settings import ControllerSettings
-from dewing_control.tuning.tuning import (
-    RANGES,
-    Bounds,
-    Judged,
-    judge,
-    pi_limit,
-    printed_gains,
-    tune,
-    value_of,
-)
+from dewing_control.settings import ControllerSettings, value_of
+from dewing_control.tuning.bounds import Bounds
+from dewing_control.tuning.judge import Judged, judge
+from dewing_control.tuning.printed import pi_limit, printed_gains
+from dewing_control.tuning.tuning import tune
 from dewing_sim import parameters
 from dewing_sim.identity import Identity
 from dewing_sim.reduced import Reduced
 
-TENSION = 0.82              # of that at rest, at the peaks of V^2 in Fig. 5
 TUNING_COST = 2.0e4         # ms
 
 
@@ -53,12 +47,13 @@ class Designed:
         model, identity = _identify(inputs[self.experiments])
         tick(0.1)
         design = Design.of(model, 'camber_mean')
-        strained = design.at_tension(TENSION)
+        bounds = Bounds()
+        strained = design.at_tension(bounds.tension)
         settings = parameters.from_yaml(self.settings, ControllerSettings)
         judged = {name: judge(parameters.replace(settings, changes), identity, design, strained)
                   for name, changes in readings(settings, identity).items()}
         if self.tuning:
-            judged['tuned'] = tune(settings, identity, design, Bounds(tension=TENSION),
+            judged['tuned'] = tune(settings, identity, design, bounds,
                                    progress=lambda done, total: tick(0.1 + 0.9 * done / total))
         values = _described(model, design) | {
             'pi_limit': pi_limit(design, printed_gains(identity)['kp']),
@@ -106,7 +101,7 @@ def _described(model: Reduced, design: Design) -> dict[str, Any]:
 
 
 def _report(judged: Judged) -> dict[str, Any]:
-    gains = {name.partition('.')[2]: value_of(judged.settings, name) for name in RANGES['pid']}
+    gains = {name.partition('.')[2]: value_of(judged.settings, name) for name in Pid.ranges}
     return judged.report() | {'gains': gains}
 
 

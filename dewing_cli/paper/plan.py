@@ -11,6 +11,7 @@ from dewing_cli.paper.experiments import Experiments
 from dewing_cli.paper.film import Film
 from dewing_cli.paper.flight import Flight, case_of, convective_time
 from dewing_cli.paper.result import Run
+from dewing_control.law.registry import LAWS, installed
 from dewing_control.model.identified import CHANGES
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
@@ -22,7 +23,8 @@ ENGINES = ('finite_volume', 'conformal')
 REYNOLDS = 2500.0
 CHORDS = (0.025, 0.030, 0.035, 0.040, 0.050)    # m
 THICKNESSES = (5.0e-5, 5.0e-4)                  # m: as printed, and as 5 kV would need
-CONTROLLERS = ('open_loop', 'pid_tuned', 'periodic', 'lqg', 'mpc')
+KIND = {'pid_tuned': 'pid'}                     # others are named by their kind
+CONTROLLERS = ('open_loop', *KIND, *(kind for kind in LAWS if kind not in KIND.values()))
 TARGETS = {'fig5': 1.10, 'target_1': 1.00, 'target_097': 0.97}
 FILM = 0.0406                                   # s, a period of shedding
 
@@ -199,9 +201,9 @@ def _loops(engine: str, extent: Extent) -> dict[str, Run]:
         for name in _installed():
             if name == 'open_loop':
                 continue
-            kind = 'pid' if name == 'pid_tuned' else name
+            kind = KIND.get(name, name)
             changes = {'kind': kind, 'reference.target': TARGETS[scenario]}
-            model = 'design' if kind in ('lqg', 'mpc') else ''
+            model = 'design' if LAWS[kind].needs_model else ''
             runs[f'{scenario}/{name}'] = flown(fig5, changes, model)
     runs |= {'printed/open_loop': flown(printed, None), 'printed/pid_tuned': flown(printed, {}),
              'largest/pid_tuned': flown(fig5, {'reference.output': 'camber_max'}),
@@ -213,9 +215,9 @@ def _loops(engine: str, extent: Extent) -> dict[str, Run]:
 
 
 def _installed() -> tuple[str, ...]:
-    """Return the controllers that can run here: mpc needs OSQP."""
-    from importlib.util import find_spec
-    return tuple(name for name in CONTROLLERS if name != 'mpc' or find_spec('osqp'))
+    """Return the controllers that can run here: some laws need more than dewing itself."""
+    return tuple(name for name in CONTROLLERS
+                 if name == 'open_loop' or installed(KIND.get(name, name)))
 
 
 def _shedding_control(engine: str, extent: Extent) -> dict[str, Run]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dewing_control.tuning.tuning import Judged
+from dewing_control.tuning.judge import Judged
 
 NYQUIST_EXTENT = 3.0
 

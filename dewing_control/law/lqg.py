@@ -18,15 +18,25 @@ from typing import NamedTuple
 import numpy as np
 from scipy import linalg
 
-from dewing_control.law.observer import Observer
-from dewing_control.law.reference import ramp
+from dewing_control.law.base import DisturbanceModel, Law, Settings, ramp
+from dewing_control.law.observer import Estimator, Observer
 from dewing_control.model.design import Design
 from dewing_control.model.loop import Compensator
-from dewing_control.settings import ControllerSettings
 from dewing_sim.identity import Identity
+from dewing_sim.parameters import choice, real
 from dewing_sim.plant import Measurement
 
 LEAST_CAMBER = 0.1          # of the passive one, below which w/a would be ill-conditioned
+
+
+@dataclass(frozen=True)
+class Regulator:
+    """Linear-quadratic regulator."""
+
+    states: str = choice('model it is designed on: of the main mode or as identified',
+                         'fundamental', 'identified')
+    control_weight: float = real(
+        '-', 'cost rho of (V^2/V_L^2)^2 against that of (a/a_ref)^2', 1.0e-12, 1.0e6)
 
 
 class Memory(NamedTuple):
@@ -38,8 +48,18 @@ class Memory(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Lqg:
+class Lqg(Law):
     """LQG from a camber in m to V^2 in V^2."""
+
+    kind = 'lqg'
+    title = 'LQG'
+    about = ('regulator and Kalman filter with a drifting load (integral action) and an '
+             'oscillating one (disturbance model)')
+    sections = {'disturbance_model': DisturbanceModel, 'estimator': Estimator, 'lqg': Regulator}
+    memory = ('lqg.states', 'disturbance_model.harmonics')
+    ranges = {'lqg.control_weight': (3.0e-3, 3.0), 'estimator.load_noise': (1.0e-2, 1.0),
+              'estimator.drift': (1.0e-4, 0.1)}
+    needs_model = True
 
     observer: Observer
     feedback: np.ndarray            # K (n,)
@@ -51,7 +71,7 @@ class Lqg:
     v_squared_max: float
 
     @classmethod
-    def of(cls, settings: ControllerSettings, identity: Identity, model: Design) -> 'Lqg':
+    def of(cls, settings: Settings, identity: Identity, model: Design) -> 'Lqg':
         """Return the controller of ``settings``, designed on ``model``."""
         reference, command = settings.reference, settings.command
         if settings.lqg.states == 'fundamental':

@@ -18,20 +18,30 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import sparse
 
 from dewing_control.law import lqg
+from dewing_control.law.base import Law, Settings
 from dewing_control.law.lqg import Lqg
 from dewing_control.model.design import Design
 from dewing_control.model.loop import Compensator
-from dewing_control.settings import ControllerSettings, Predictive
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.parameters import count, real
 from dewing_sim.plant import Measurement
 
 TOLERANCE = 1.0e-6          # of the programme, in V_L^2
 MOST_ITERATIONS = 600       # which bound the time of a step; bounds hold whatever is left
 PENALTY = 5.0               # of ADMM, which needs fewest iterations here
+
+
+@dataclass(frozen=True)
+class Predictive:
+    """What is predicted."""
+
+    horizon: float = real('s', 'time over which the bounds of V^2 are foreseen', 1.0e-6, 10.0)
+    moves: int = count('blocks of constant correction in the horizon', 1, 200)
+    rate_limit: float = real(
+        '1/s', 'largest rate of change of V^2/V_L^2', 1.0e-3, 1.0e9)
 
 
 class Memory(NamedTuple):
@@ -108,8 +118,18 @@ def _effect(model: Design, feedback, closed, lengths) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class Mpc:
+class Mpc(Law):
     """MPC from a camber in m to V^2 in V^2."""
+
+    kind = 'mpc'
+    title = 'MPC'
+    about = ('the same, with 0 <= V^2 <= V_max^2 and a rate limit foreseen by OSQP, and a '
+             "governor of the reference; `pip install 'dewing[mpc]'`")
+    sections = {**Lqg.sections, 'mpc': Predictive}
+    memory = (*Lqg.memory, 'mpc.moves')
+    ranges = Lqg.ranges
+    needs_model = True
+    requires = {'osqp': 'dewing[mpc]'}
 
     base: Lqg
     prediction: Prediction
@@ -117,8 +137,8 @@ class Mpc:
     solver: Any                     # OSQP; each solution depends on what it is given alone
 
     @classmethod
-    def of(cls, settings: ControllerSettings, identity: Identity, model: Design) -> 'Mpc':
-        """Return the controller of ``settings``; raise `BadInput` if OSQP is not installed."""
+    def of(cls, settings: Settings, identity: Identity, model: Design) -> 'Mpc':
+        """Return the controller of ``settings``, designed on ``model``."""
         base = Lqg.of(settings, identity, model)
         prediction = Prediction.of(base, settings.mpc)
         return cls(base, prediction, settings.mpc.rate_limit, _solver(prediction))
@@ -179,10 +199,8 @@ class Mpc:
 
 def _solver(prediction: Prediction) -> Any:
     """Return OSQP with the constant matrices factorised."""
-    try:
-        import osqp
-    except ImportError:
-        raise BadInput("kind = mpc needs OSQP: pip install 'dewing[mpc]'") from None
+    import osqp
+    from scipy import sparse
     lengths, effect = prediction.lengths, prediction.effect
     rows = np.vstack([effect, np.diff(effect, axis=0, prepend=0.0)])
     bounds = np.full(len(rows), 1.0)

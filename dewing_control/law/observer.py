@@ -17,8 +17,20 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
+from dewing_control.law.base import DisturbanceModel
 from dewing_control.model.design import Design
-from dewing_control.settings import DisturbanceModel, Estimator
+from dewing_sim.parameters import real
+
+
+@dataclass(frozen=True)
+class Estimator:
+    """Standard deviations a sample of the Kalman filter; normalised."""
+
+    sensor_noise: float = real('-', 'noise of the measured camber, in a_ref', 1.0e-9, 1.0)
+    load_noise: float = real('-', 'white load on the membrane, in V_L^2', 0.0, 1.0e3)
+    drift: float = real('-', 'increments of the drifting load, in V_L^2', 1.0e-12, 1.0e3)
+    oscillation: float = real(
+        '-', 'increments of the phasors of the periodic load, in V_L^2', 1.0e-12, 1.0e3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +84,7 @@ class Observer:
 def exosystem(disturbance: DisturbanceModel, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Return transition (e, e) and outlet (e,) of a drift and of the harmonics' phasors."""
     blocks, outlet = [np.ones((1, 1))], [1.0]
-    for harmonic in range(1, disturbance.harmonics + 1):
-        angle = 2.0 * np.pi * harmonic * disturbance.frequency * dt
+    for angle in disturbance.angles(dt):
         cosine, sine = np.cos(angle), np.sin(angle)
         blocks.append(np.array([[cosine, sine], [-sine, cosine]]))
         outlet += [1.0, 0.0]

@@ -12,7 +12,6 @@ the error at n f fades like exp(-lambda t / 2). Phasors rest while the command s
 """
 
 import cmath
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -20,11 +19,20 @@ import numpy as np
 from scipy import linalg
 
 from dewing_control.law import pid
-from dewing_control.law.pid import Pid
+from dewing_control.law.base import DisturbanceModel, Law, Settings
+from dewing_control.law.pid import Pid, PidGains
 from dewing_control.model.loop import Compensator
-from dewing_control.settings import ControllerSettings
 from dewing_sim.identity import Identity
+from dewing_sim.parameters import real
 from dewing_sim.plant import Measurement
+
+
+@dataclass(frozen=True)
+class Learning:
+    """How fast the feed-forward is learnt."""
+
+    learning_rate: float = real(
+        '1/s', 'rate at which the phasors learn', 0.0, 1.0e4)
 
 
 class Memory(NamedTuple):
@@ -35,21 +43,28 @@ class Memory(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Periodic:
+class Periodic(Law):
     """PID and phasors from a camber in m to V^2 in V^2."""
+
+    kind = 'periodic'
+    title = 'PID, learnt feed-forward'
+    about = ('`pid` and learnt phasors at the harmonics of a known frequency (adaptive '
+             'feed-forward cancellation, a resonator)')
+    sections = {'pid': PidGains, 'disturbance_model': DisturbanceModel, 'periodic': Learning}
+    memory = ('disturbance_model.harmonics',)
+    ranges = {'periodic.learning_rate': (1.0, 200.0)}
 
     base: Pid
     rotations: tuple[complex, ...]      # of each phasor in one sampling time
     learning: tuple[complex, ...]       # lambda T C(n f)
 
     @classmethod
-    def of(cls, settings: ControllerSettings, identity: Identity) -> 'Periodic':
+    def of(cls, settings: Settings, identity: Identity) -> 'Periodic':
         """Return the controller that ``settings`` describe for the plant of ``identity``."""
-        base, load = Pid.of(settings, identity), settings.disturbance_model
-        angles = [2.0 * math.pi * n * load.frequency * base.dt
-                  for n in range(1, load.harmonics + 1)]
+        base = Pid.of(settings, identity)
+        angles = settings.disturbance_model.angles(base.dt)
         response = base.compensator().response(
-            np.array(angles) / (2.0 * math.pi * base.dt), base.dt)
+            np.array(angles) / (2.0 * np.pi * base.dt), base.dt)
         rate = settings.periodic.learning_rate * base.dt
         return cls(base, tuple(cmath.exp(1j * angle) for angle in angles),
                    tuple(complex(rate * value) for value in response))

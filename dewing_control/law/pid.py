@@ -16,15 +16,28 @@ approaches the target at a limited rate.
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from dewing_control.law.reference import ramp
+from dewing_control.law.base import Law, Settings, ramp
 from dewing_control.model.loop import Compensator
-from dewing_control.settings import ControllerSettings, PidGains
 from dewing_sim.identity import Identity
+from dewing_sim.parameters import real
 from dewing_sim.plant import Measurement
+
+
+@dataclass(frozen=True)
+class PidGains:
+    """PID of a/a_ref to V^2/V_L^2 (paper eq. 10)."""
+
+    kp: float = real('-', 'proportional gain', 0.0, 1.0e6)
+    ki: float = real('1/s', 'integral gain', 0.0, 1.0e9)
+    kd: float = real('s', 'derivative gain', 0.0, 1.0e6)
+    derivative_filter: float = real(
+        's', 'time constant of the derivative filter', 0.0, 1.0e3)
+    tracking_time: float = real(
+        's', 'time constant of the anti-windup back-calculation', 1.0e-9, 1.0e3)
 
 
 class Memory(NamedTuple):
@@ -37,8 +50,16 @@ class Memory(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Pid:
+class Pid(Law):
     """PID from a camber in m to V^2 in V^2."""
+
+    kind = 'pid'
+    title = 'PID'
+    about = ('paper eq. 10, backward Euler, filtered derivative, back-calculation at both bounds, '
+             'bumpless change of gains')
+    sections = {'pid': PidGains}
+    ranges = {'pid.kp': (0.1, 30.0), 'pid.ki': (10.0, 1.0e5), 'pid.kd': (1.0e-3, 0.05),
+              'pid.derivative_filter': (1.0e-5, 1.0e-3)}
 
     gains: PidGains
     output: str                     # name of the Measurement fed back
@@ -50,13 +71,19 @@ class Pid:
     dt: float                       # sampling time T in s
 
     @classmethod
-    def of(cls, settings: ControllerSettings, identity: Identity) -> 'Pid':
+    def of(cls, settings: Settings, identity: Identity) -> 'Pid':
         """Return the controller that ``settings`` describe for the plant of ``identity``."""
         reference, command = settings.reference, settings.command
         return cls(settings.pid, reference.output, reference.target, reference.rate,
                    getattr(identity, reference.output), identity.v_squared_slack,
                    min(command.voltage_limit**2, identity.v_squared_max),
                    command.period_steps * identity.dt)
+
+    @classmethod
+    def dependent(cls, settings: Any) -> dict[str, float]:
+        """Return the tracking time kp/ki, so that wind-up fades as fast as the integral acts."""
+        gains = settings.pid
+        return {'pid.tracking_time': max(gains.kp / gains.ki, 1.0e-9)} if gains.ki else {}
 
     def start(self, v_squared: float = 0.0) -> Memory:
         """Return the memory of a controller that takes over, without a bump, at ``v_squared``."""

@@ -1,31 +1,110 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which control law a kind names."""
+"""The control laws: a law of dewing's own is a file and its line in `LAWS`.
 
-from dewing_control.law.supervisor import Controller
+A law from outside the package needs no line: its kind is ``package.module:Name``.
+"""
+
+import dataclasses
+import math
+from importlib.util import find_spec
+
+import numpy as np
+
+from dewing_control.law.base import Law, Settings
+from dewing_control.law.lqg import Lqg
+from dewing_control.law.mpc import Mpc
+from dewing_control.law.periodic import Periodic
+from dewing_control.law.pid import Pid
 from dewing_control.model import design
 from dewing_control.model.design import Design
-from dewing_control.settings import ControllerSettings
+from dewing_sim import parameters, plugins
+from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.plant import Measurement
+
+LAWS: dict[str, type[Law]] = {law.kind: law for law in (Pid, Periodic, Lqg, Mpc)}
+TRIED = 3                   # steps in which any gain that is not finite has reached V^2
 
 
-def law(settings: ControllerSettings, identity: Identity, model: Design | None = None,
-        ) -> Controller:
+def of_kind(kind: str) -> type[Law]:
+    """Return the law that ``kind`` names; raise `BadInput` if there is none that can be used."""
+    if kind in LAWS:
+        return LAWS[kind]
+    if not plugins.is_plugin(kind):
+        raise BadInput(f'kind = {kind!r} is no control law: one of {", ".join(LAWS)} or '
+                       'package.module:Name')
+    found = plugins.load(kind, 'kind')
+    flaw = _flaw(found)
+    if flaw:
+        raise BadInput(f'kind = {kind!r} is no control law: {flaw}')
+    return found
+
+
+def _flaw(found: type) -> str:
+    """Return why ``found`` cannot be used as a law, nothing if it can."""
+    if not (isinstance(found, type) and issubclass(found, Law)):
+        return 'it does not inherit Law of dewing_control.law.base'
+    if found.__abstractmethods__:
+        return f'it does not define {", ".join(sorted(found.__abstractmethods__))}'
+    for name, section in found.sections.items():
+        if not (dataclasses.is_dataclass(section) and all(
+                'type' in field.metadata for _, field in parameters.fields(section))):
+            return (f'its section {name} is no dataclass of fields declared by real, count, '
+                    'choice and text of dewing_sim.parameters')
+    known = {f'{name}.{leaf}' for name, section in found.sections.items()
+             for leaf, _ in parameters.fields(section)}
+    for name, (low, high) in found.ranges.items():
+        if name not in known or not 0.0 < low < high:
+            return f'its range of {name} is not that of a positive setting in its sections'
+    return ''
+
+
+def installed(kind: str) -> bool:
+    """Return whether all that the law ``kind`` imports is there."""
+    return not _missing(of_kind(kind))
+
+
+def _missing(found: type[Law]) -> list[str]:
+    return [what for module, what in found.requires.items() if find_spec(module) is None]
+
+
+def law(settings: Settings, identity: Identity, model: Design | None = None) -> Law:
     """Return the law that ``settings.kind`` names, for the plant of ``identity``.
 
-    ``model`` is what lqg and mpc are designed on, by default that in the file ``settings.model``.
-    Raises `BadInput` if it is missing or unusable.
+    ``model`` is what a law that needs one is designed on, by default that in the file
+    ``settings.model``. Raises `BadInput` if the kind is not known, if its model is missing or
+    unusable, and whenever the design fails or leads to a V^2 that is not finite.
     """
-    if settings.kind == 'pid':
-        from dewing_control.law.pid import Pid
-        return Pid.of(settings, identity)
-    if settings.kind == 'periodic':
-        from dewing_control.law.periodic import Periodic
-        return Periodic.of(settings, identity)
-    model = model or design.load(settings.model, settings.reference.output,
-                                 settings.command.period_steps * identity.dt)
-    if settings.kind == 'lqg':
-        from dewing_control.law.lqg import Lqg
-        return Lqg.of(settings, identity, model)
-    from dewing_control.law.mpc import Mpc
-    return Mpc.of(settings, identity, model)
+    found = of_kind(settings.kind)
+    if _missing(found):
+        raise BadInput(f"kind = {settings.kind} needs more: pip install '{_missing(found)[0]}'")
+    try:
+        with np.errstate(all='ignore'):             # what comes of it is looked at below
+            models = (model or _model(settings, identity),) if found.needs_model else ()
+            made = found.of(settings, identity, *models)
+            _try(made, settings, identity)
+    except BadInput:
+        raise
+    except Exception as error:      # LinAlgError of a Riccati equation, or a law from outside
+        raise BadInput(f'kind = {settings.kind} cannot be designed with these settings '
+                       f'({type(error).__name__}: {" ".join(str(error).split())})') from error
+    return made
+
+
+def _model(settings: Settings, identity: Identity) -> Design:
+    return design.load(settings.model, settings.reference.output,
+                       settings.command.period_steps * identity.dt)
+
+
+def _try(made: Law, settings: Settings, identity: Identity) -> None:
+    """Let the law answer the plant at rest; raise `BadInput` if it cannot."""
+    rest = Measurement(*(0.0 for _ in Measurement._fields))._replace(
+        camber_mean=identity.camber_mean, camber_max=identity.camber_max)
+    memory = made.start(0.0)
+    for step in range(TRIED):
+        time = step * settings.command.period_steps * identity.dt
+        memory, v_squared = made.step(memory, rest._replace(time=time))
+        if not math.isfinite(v_squared):
+            raise BadInput(f'kind = {settings.kind} cannot be designed with these settings: it '
+                           f'answers the plant at rest with V^2 = {v_squared}')

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
+from dewing_sim.errors import DewingError, RunFailed
 from dewing_sim.plant import Measurement
 
 
@@ -34,6 +35,8 @@ class Supervisor:
 
     A measurement that is not finite repeats the last V^2; after ``hold`` of them in a row V^2 is
     zero, and the controller starts afresh from there when usable measurements return.
+
+    Raises `RunFailed` if the law itself fails or asks for a V^2 that is not finite.
     """
 
     controller: Controller
@@ -54,10 +57,20 @@ class Supervisor:
             return self._without_measurement(memory)
         if memory.inner is not None and memory.steps + 1 < self.period:
             return memory._replace(steps=memory.steps + 1, unusable=0)
-        inner = memory.inner
-        if inner is None:
-            inner = self.controller.start(memory.v_squared)
-        inner, v_squared = self.controller.step(inner, measurement)
+        try:
+            inner = memory.inner
+            if inner is None:
+                inner = self.controller.start(memory.v_squared)
+            inner, v_squared = self.controller.step(inner, measurement)
+            usable = math.isfinite(v_squared)
+        except DewingError:
+            raise
+        except Exception as error:                  # a law from outside may raise anything
+            raise RunFailed(f'the control law failed at {measurement.time:g} s '
+                            f'({type(error).__name__}: {" ".join(str(error).split())})') from error
+        if not usable:
+            raise RunFailed(f'the control law asked for V^2 = {v_squared} at '
+                            f'{measurement.time:g} s')
         return Memory(inner, v_squared, 0, 0)
 
     def _without_measurement(self, memory: Memory) -> Memory:

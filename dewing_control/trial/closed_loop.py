@@ -4,10 +4,10 @@
 
 from typing import Any, Iterator
 
-from dewing_control.law.registry import law
+from dewing_control.law.registry import law, of_kind
 from dewing_control.law.supervisor import Controller, Supervisor
 from dewing_control.model.design import Design
-from dewing_control.settings import ControllerSettings
+from dewing_control.settings import ControllerSettings, value_of
 from dewing_sim.identity import Identity
 from dewing_sim.plant import Measurement, Outputs, Plant, rollout
 
@@ -28,9 +28,10 @@ def same_memory(one: ControllerSettings, other: ControllerSettings) -> bool:
 
 
 def _form(settings: ControllerSettings) -> tuple:
-    return (settings.kind, settings.model, settings.reference.output, settings.lqg.states,
-            settings.disturbance_model.harmonics, settings.mpc.moves,
-            settings.command.period_steps)
+    found = of_kind(settings.kind)
+    model = settings.model if found.needs_model else ''
+    return (settings.kind, model, settings.reference.output, settings.command.period_steps,
+            *(value_of(settings, name) for name in found.memory))
 
 
 def closed_loop(plant: Plant, state: Any, loop: Controller, steps: int,

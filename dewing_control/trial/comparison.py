@@ -12,17 +12,19 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any, Iterator, Sequence
 
+from dewing_control.law.registry import LAWS
 from dewing_control.law.supervisor import Controller
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial import closed_loop, trial
-from dewing_control.trial.scenarios import CONTROLLERS, SCENARIOS, Scenario, TwoToneWing
-from dewing_control.tuning.tuning import printed_gains
+from dewing_control.trial.scenarios import SCENARIOS, Scenario, TwoToneWing
+from dewing_control.tuning.printed import printed_gains
 from dewing_sim import parameters
 from dewing_sim.build import Built, build_wing
 from dewing_sim.identity import Identity
 from dewing_sim.parameters import Case
 
-KIND = {'pid_paper': 'pid', 'pid_tuned': 'pid'}
+KIND = {'pid_paper': 'pid', 'pid_tuned': 'pid'}     # the kinds of two gains; others name one
+CONTROLLERS = ('open_loop', *KIND, *(kind for kind in LAWS if kind not in KIND.values()))
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,6 @@ SCENARIOS = {
                             case='paper_alpha8'),
 }
 QUICK = ('fig5', 'target_1', 'below', 'step')
-CONTROLLERS = ('open_loop', 'pid_paper', 'pid_tuned', 'lqg', 'periodic', 'mpc')
 
 
 class TwoToneWing(Wing):

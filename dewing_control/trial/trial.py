@@ -39,8 +39,8 @@ def run(plant: Plant, rest: Any, controller: Controller | None, steps: int, memb
     """Return a run from ``rest`` under ``controller``, or at the V^2 of rest without one.
 
     ``passive`` is the camber (m) that all are relative to, by default that at rest; ``noise``, in
-    it, is the standard deviation of a white noise on the measured cambers. A failing plant ends
-    the run, which keeps what was computed.
+    it, is the standard deviation of a white noise on the measured cambers. A failing plant or
+    law ends the run, which keeps what was computed.
     """
     generator = np.random.default_rng(seed)
     state, outputs, rows, failure = rest, plant.observe(rest), [], ''
@@ -49,11 +49,11 @@ def run(plant: Plant, rest: Any, controller: Controller | None, steps: int, memb
         memory = controller.start(v_squared)
     for _ in range(steps):
         begun = time.perf_counter()
-        if controller is not None:
-            memory, v_squared = controller.step(
-                memory, _noisy(Measurement.of(outputs), noise * passive, generator))
-        seconds = time.perf_counter() - begun
         try:
+            if controller is not None:
+                memory, v_squared = controller.step(
+                    memory, _noisy(Measurement.of(outputs), noise * passive, generator))
+            seconds = time.perf_counter() - begun
             state = plant.step(state, v_squared)
         except RunFailed as error:
             failure = str(error)

@@ -11,7 +11,7 @@ from dewing_control.model.design import Design
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial import trial
 from dewing_control.trial.closed_loop import closed_loop, controller
-from dewing_control.tuning.tuning import FREQUENCY, LOAD
+from dewing_control.tuning.judge import FREQUENCY, LOAD
 from dewing_sim.build import Built
 from dewing_sim.identity import Identity
 from dewing_sim.reduced import Reduced

@@ -155,7 +155,8 @@ def descriptor(field: dataclasses.Field, read_only: bool) -> ParameterDescriptor
     elif 'low' in meta:
         result.integer_range = [IntegerRange(from_value=meta['low'], to_value=meta['high'])]
     if 'options' in meta:
-        result.additional_constraints = 'one of ' + ', '.join(meta['options'])
+        outside = ' or package.module:Name' if meta.get('open') else ''
+        result.additional_constraints = 'one of ' + ', '.join(meta['options']) + outside
     return result
 
 
@@ -176,11 +177,13 @@ def take_overrides(node) -> dict[str, Any]:
 def declare(node, section: Any, read_only: bool, live: Collection[str] = ()) -> None:
     """Declare every leaf of ``section`` with its value, unit, meaning and range.
 
-    ``live`` names leaves that may be changed although the others are read-only.
+    What is declared already stays as it is. ``live`` names leaves that may be changed although
+    the others are read-only.
     """
     for name, value, field in parameters.leaves(section):
-        node.declare_parameter(name, value, descriptor(field, read_only and name not in live),
-                               ignore_override=True)
+        if not node.has_parameter(name):
+            node.declare_parameter(name, value, descriptor(field, read_only and name not in live),
+                                   ignore_override=True)
 
 
 def changed(section: Any, given) -> tuple[Any, SetParametersResult]:

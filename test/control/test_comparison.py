@@ -89,7 +89,7 @@ def test_controllers_differ_only_as_named_and_know_the_nominal_wing(tmp_path):
     other = identity()
     assert comparison.controller('open_loop', setup, scenario, other) is None
     laws = {name: comparison.controller(name, setup, scenario, other).controller
-            for name in scenarios.CONTROLLERS[1:]}
+            for name in comparison.CONTROLLERS[1:]}
     assert laws['pid_paper'].gains.ki == pytest.approx(2.3e15 * other.camber_mean
                                                        / other.v_squared_slack)
     assert laws['pid_tuned'].gains == setup.settings.pid

@@ -12,15 +12,16 @@ from identified_wing import CAMBER, SLACK, design_model, identity, reduced_model
 from scipy import optimize
 
 from dewing_control.law.mpc import block_lengths
+from dewing_control.law.registry import LAWS as KINDS
 from dewing_control.law.registry import law
 from dewing_control.law.supervisor import Supervisor
-from dewing_control.settings import KINDS, ControllerSettings
+from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.plant import Measurement
 
 pytest.importorskip('osqp')
-MODEL_BASED = ('lqg', 'mpc')
+MODEL_BASED = [kind for kind, law in KINDS.items() if law.needs_model]
 
 
 def make(kind, **changes):

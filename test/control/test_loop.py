@@ -89,7 +89,7 @@ def test_pi_on_a_lightly_damped_mode_is_stable_up_to_the_closed_form(kp):
 
 def test_the_gains_as_printed_are_unstable_on_the_wing():
     """Ki = 2.3e15, Kp = 4.0e11, Kd = 7.5e5 per metre of camber fail: Kd damps next to nothing."""
-    from dewing_control.tuning.tuning import printed_gains
+    from dewing_control.tuning.printed import printed_gains
     model, wing = design_model(), identity()
     printed = pid(**printed_gains(wing)).compensator()
     assert not Loop.of(model, printed).stable

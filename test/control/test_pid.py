@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, strategies
 from scipy import signal
 
-from dewing_control.law.pid import Pid
+from dewing_control.law.pid import Pid, PidGains
 from dewing_control.law.supervisor import Supervisor
-from dewing_control.settings import ControllerSettings, PidGains
+from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.plant import Measurement

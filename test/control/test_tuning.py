@@ -14,8 +14,10 @@ from dewing_cli.main import main
 from dewing_control.model.loop import Loop
 from dewing_control.settings import ControllerSettings
 from dewing_control.tuning import on_wing as verification
-from dewing_control.tuning import tuning
-from dewing_control.tuning.tuning import Bounds, judge, pi_limit, step_error, tune
+from dewing_control.tuning.bounds import Bounds
+from dewing_control.tuning.judge import LOAD, _saturation, judge, step_error
+from dewing_control.tuning.printed import pi_limit
+from dewing_control.tuning.tuning import tune
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import RunFailed
 
@@ -27,7 +29,7 @@ def settings(kind='pid', **changes):
 @pytest.mark.parametrize('kind', ['pid', 'periodic', 'lqg'])
 def test_shipped_settings_are_within_the_bounds_they_were_tuned_to(kind):
     model = design_model()
-    judged = judge(settings(kind), identity(), model, model.at_tension(0.82))
+    judged = judge(settings(kind), identity(), model, model.at_tension(Bounds.tension))
     assert judged.stable and judged.peak < 2.1
     assert judged.saturation == 0.0
 
@@ -62,9 +64,9 @@ def test_step_error_is_the_loop_on_the_plant():
 
 def test_saturation_share_is_that_of_a_sine():
     """A command 0.05 (r' + 1 + cos) with r' = -1 is negative half the time."""
-    share = tuning._saturation(design_model(), 0j, -0.05)
+    share = _saturation(design_model(), 0j, -0.05)
     assert share == pytest.approx(0.5, abs=0.02)
-    assert tuning._saturation(design_model(), 0j, 0.10) == 0.0
+    assert _saturation(design_model(), 0j, 0.10) == 0.0
 
 
 def test_pi_limit_is_where_the_loop_turns_unstable():
@@ -80,7 +82,7 @@ def test_pi_limit_is_where_the_loop_turns_unstable():
 def test_linear_loop_predicts_the_amplitude_on_the_model():
     chosen, model = settings(), design_model()
     camber = verification.on_model(chosen, identity(), reduced_model(), model, 0.3)
-    expected = tuning.LOAD * abs(judge(chosen, identity(), model, model).sensitivity)
+    expected = LOAD * abs(judge(chosen, identity(), model, model).sensitivity)
     assert 0.5 * np.ptp(camber[-1000:]) == pytest.approx(expected, rel=0.02)
     found = verification.difference(camber, camber, 1.0e-4)
     assert found['rms'] == 0.0 and found['amplitude_wing'] == found['amplitude_model']

@@ -4,9 +4,8 @@
 
 import numpy as np
 
-from dewing_control.law.pid import Pid
+from dewing_control.law.pid import Pid, PidGains
 from dewing_control.model.design import Design
-from dewing_control.settings import PidGains
 
 
 def pid(kp, ki, kd=0.0, derivative_filter=0.0, dt=1.0e-4):

@@ -5,11 +5,12 @@
 import numpy as np
 
 from dewing_cli.paper import drawing
-from dewing_cli.paper.plan import CONTROLLERS, Plan
+from dewing_cli.paper.plan import CONTROLLERS, KIND, Plan
 from dewing_cli.paper.section import Figure, Found, Section, Table
+from dewing_control.law.registry import LAWS
 
-WORDS = {'open_loop': 'open loop', 'pid_tuned': 'PID', 'periodic': 'PID, learnt feed-forward',
-         'lqg': 'LQG', 'mpc': 'MPC'}
+WORDS = {'open_loop': 'open loop',
+         **{name: LAWS[KIND.get(name, name)].title for name in CONTROLLERS[1:]}}
 MEANINGS = {'fig5': 'target 1.10', 'target_1': 'target 1.00',
             'target_097': 'target 0.97: V² would have to be negative'}
 
