@@ -103,7 +103,7 @@ def test_the_layout_is_that_of_scipy(width, m, seed):
 @given(width=WIDTHS, m=SIZES, rank=st.integers(0, 12), factor=st.floats(0.0, 20.0), seed=SEEDS)
 def test_inverse_of_a_band_plus_low_rank_is_that_of_the_full_matrix(
         width, m, rank, factor, seed):
-    """Within rounding of A^-1 b times the conditions, Woodbury's core I + W B^T A^-1 B included."""
+    """Within rounding of A^-1 b times the conditions, that of I + W B^T A^-1 B included."""
     band, low_rank = random_band(width, m, seed), random_low_rank(m, rank, seed + 1)
     basis, weight = low_rank.basis, factor * low_rank.weight
     matrix = full(band) + basis @ weight @ basis.T
