@@ -1,12 +1,14 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""Result files: never half written, and never written over another without permission."""
+"""Result files: never half written, never written over another unasked, read with one sentence."""
 
 import os
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, Iterator
+
+import numpy as np
 
 from dewing_sim.errors import BadInput
 
@@ -45,3 +47,28 @@ def new_file(path: str | Path, overwrite: bool = False) -> Iterator[BinaryIO]:
     except BaseException:
         os.unlink(temporary)
         raise
+
+
+@contextmanager
+def read_npz(path: str | Path, what: str) -> Iterator[dict[str, np.ndarray]]:
+    """Give the arrays of an npz file to a block that makes ``what``, such as 'a model', of them.
+
+    Whatever is wrong with the file, or with the arrays for the block, becomes `BadInput`.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+    except FileNotFoundError:
+        raise BadInput(f'{path}: no such file') from None
+    except Exception as error:          # numpy and zipfile raise some ten kinds
+        raise BadInput(f'{path}: not {what} ({_sentence(error)})') from None
+    try:
+        yield arrays
+    except (KeyError, IndexError, ValueError, TypeError, AttributeError) as error:
+        raise BadInput(f'{path}: not {what} ({_sentence(error)})') from None
+
+
+def _sentence(error: Exception) -> str:
+    if isinstance(error, KeyError):
+        return f'it holds no {error}'
+    return str(error) or type(error).__name__

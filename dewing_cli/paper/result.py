@@ -4,14 +4,14 @@
 
 import hashlib
 import json
-import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Callable, Mapping, Protocol
 
 import numpy as np
 
-from dewing_sim.files import new_file
+from dewing_sim.errors import BadInput
+from dewing_sim.files import new_file, read_npz
 from dewing_sim.machine import fingerprint as machine
 
 Tick = Callable[[float], None]          # hears the finished share of a run, 0 to 1
@@ -63,11 +63,11 @@ def keep(path: Path, result: Result, mark: str) -> None:
 def recall(path: Path, mark: str) -> Result | None:
     """Return what was kept under the fingerprint ``mark``, None if there is no such file."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with read_npz(path, 'a kept run') as file:
             if str(file['mark']) != mark:
                 return None
-            arrays = {name.removeprefix('arrays/'): file[name] for name in file.files
+            arrays = {name.removeprefix('arrays/'): array for name, array in file.items()
                       if name.startswith('arrays/')}
             return Result(json.loads(str(file['values'])), arrays)
-    except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
+    except BadInput:
         return None

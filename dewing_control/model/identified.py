@@ -9,10 +9,10 @@ from typing import Callable
 
 from dewing_sim import parameters, reduced
 from dewing_sim.build import Built
-from dewing_sim.errors import BadInput
+from dewing_sim.machine import caches
 from dewing_sim.machine import fingerprint as machine
 from dewing_sim.reduced import Reduced
-from dewing_sim.rest.trim import cache_folder, fingerprint
+from dewing_sim.rest.trim import fingerprint
 
 # Control needs the slow response of the wake as much as the modes: a window of 1.2 c/U, as in the
 # paper, leaves the damping of the first mode a third too low.
@@ -23,21 +23,16 @@ OUTPUTS = ('camber_mean',)
 
 def identify(built: Built, progress: Callable[[float], None] = lambda fraction: None) -> Reduced:
     """Return the model of mean camber of a wing at rest, from the cache or by experiment."""
-    path = cache_folder() / f'model-{_key(built)}.npz'
-    if path.is_file():
-        try:
-            return reduced.load(path)
-        except BadInput:
-            path.unlink(missing_ok=True)        # a broken cache is computed again
-    from dewing_sysid.identify import identify_plant
-    found = identify_plant(built.plant, built.rest, built.identity, _settings(), OUTPUTS,
-                           progress=progress)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=path.parent) as folder:
-        draft = Path(folder) / path.name
-        found.model.save(draft)
-        model = reduced.load(draft)
-        draft.replace(path)
+    name = f'model-{_key(built)}.npz'
+    model = caches.recall(name, reduced.load)
+    if model is None:
+        from dewing_sysid.identify import identify_plant
+        found = identify_plant(built.plant, built.rest, built.identity, _settings(), OUTPUTS,
+                               progress=progress).model
+        caches.keep(name, found.save)
+        with tempfile.TemporaryDirectory() as folder:
+            found.save(Path(folder) / name)
+            model = reduced.load(Path(folder) / name)
     return model
 
 

@@ -4,13 +4,11 @@
 
 import dataclasses
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 import yaml
 
-from dewing_sim.errors import BadInput
-from dewing_sim.files import new_file
+from dewing_sim.files import new_file, read_npz
 from dewing_sim.fluid.engines import STATES
 from dewing_sim.parameters import Case, from_mapping, to_mapping
 from dewing_sim.state import State
@@ -45,22 +43,16 @@ def load_case(path: str | Path) -> Case:
 
 
 def _read(path: str | Path) -> tuple[State, Case]:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+    with read_npz(path, 'a saved wing state') as arrays:
         if arrays.get('format') != FORMAT:
-            raise KeyError('format')
+            raise ValueError(f"format {arrays.get('format')}, expected {FORMAT}")
         case = from_mapping(Case, yaml.safe_load(str(arrays['case'])))
         values = {'flow': _section(STATES[case.numerics.engine], 'flow', arrays),
                   'motion': _section(Motion, 'motion', arrays)}
         for field in dataclasses.fields(State):
             if field.name not in SECTIONS:
                 values[field.name] = _value(arrays[field.name])
-    except FileNotFoundError:
-        raise BadInput(f'{path}: no such file') from None
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
-        raise BadInput(f'{path}: not a saved wing state ({error})') from None
-    return State(**values), case
+        return State(**values), case
 
 
 def _section(schema: type, name: str, arrays: dict):

@@ -13,8 +13,8 @@ import numpy as np
 import yaml
 
 from dewing_sim.errors import BadInput
-from dewing_sim.files import new_file
-from dewing_sim.rest.trim import QUASI_STEADY, cache_folder, fingerprint
+from dewing_sim.machine import caches
+from dewing_sim.rest.trim import QUASI_STEADY, fingerprint
 from dewing_sim.state import State
 from dewing_sim.wing import Wing
 
@@ -28,11 +28,11 @@ def camber(wing: Wing, rest: State, progress=None) -> tuple[float, float]:
 
     ``progress(done, total)`` is called if a shedding wing has to be marched on.
     """
-    path = cache_folder() / f'passive-{fingerprint(wing)}.yaml'
-    found = _read(path)
+    name = f'passive-{fingerprint(wing)}.yaml'
+    found = caches.recall(name, _read)
     if found is None:
         found = measure(wing, rest, progress)
-        _keep(path, found)
+        caches.keep(name, lambda draft: draft.write_text(yaml.safe_dump(list(found))))
     return found
 
 
@@ -69,18 +69,9 @@ def _sample(wing: Wing, state: State) -> tuple[float, float]:
     return float(outputs.camber_mean), float(outputs.camber_max)
 
 
-def _read(path: Path) -> tuple[float, float] | None:
+def _read(path: Path) -> tuple[float, float]:
     try:
         mean, largest = map(float, yaml.safe_load(path.read_text(encoding='utf-8')))
-    except (OSError, TypeError, ValueError, yaml.YAMLError):
-        return None                     # a broken cache is computed again
+    except (TypeError, ValueError, yaml.YAMLError):
+        raise BadInput(f'{path}: not a passive camber') from None
     return mean, largest
-
-
-def _keep(path: Path, found: tuple[float, float]) -> None:
-    """Write atomically; a full disk is no failure."""
-    try:
-        with new_file(path, overwrite=True) as file:
-            file.write(yaml.safe_dump(list(found)).encode())
-    except (OSError, BadInput):
-        return

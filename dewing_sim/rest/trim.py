@@ -8,19 +8,16 @@ circulation; from there to ``trim_time`` the motion is the true one.
 """
 
 import hashlib
-import os
-import tempfile
 from dataclasses import replace
-from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 import yaml
 
 from dewing_sim.coupling.interface import Coupled
-from dewing_sim.errors import BadInput
 from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.fluid.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
+from dewing_sim.machine import caches
 from dewing_sim.machine import fingerprint as machine
 from dewing_sim.parameters import Case, to_mapping
 from dewing_sim.rest import checkpoint
@@ -52,14 +49,11 @@ class Wing(Protocol):
 
 def rest(wing: Wing, progress=None) -> State:
     """Return the rest state of ``wing`` from the cache, or march to it and keep it."""
-    path = cache_folder() / f'rest-{fingerprint(wing)}.npz'
-    if path.is_file():
-        try:
-            return checkpoint.load(path)
-        except BadInput:
-            path.unlink(missing_ok=True)        # a broken cache is computed again
-    state = march(wing, progress)
-    _keep(path, state, wing)
+    name = f'rest-{fingerprint(wing)}.npz'
+    state = caches.recall(name, checkpoint.load)
+    if state is None:
+        state = march(wing, progress)
+        caches.keep(name, lambda draft: checkpoint.save(draft, state, wing.case))
     return state
 
 
@@ -106,20 +100,3 @@ def fingerprint(wing: Wing) -> str:
     digest = hashlib.sha256(yaml.safe_dump(case).encode())
     digest.update(machine.fingerprint(type(wing).__module__).encode())
     return digest.hexdigest()[:24]
-
-
-def cache_folder() -> Path:
-    """Return the folder of cached states: $XDG_CACHE_HOME/dewing, else ~/.cache/dewing."""
-    return Path(os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache') / 'dewing'
-
-
-def _keep(path: Path, state: State, wing: Wing) -> None:
-    """Write atomically, so that two processes may trim at once; a full disk is no failure."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
-            draft = Path(folder) / path.name
-            checkpoint.save(draft, state, wing.case)
-            draft.replace(path)
-    except OSError:
-        return

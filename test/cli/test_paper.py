@@ -281,7 +281,7 @@ def test_series_are_written_with_units_and_never_with_nan(drawn, tmp_path):
 
 TINY_COMMAND = """
 import sys
-from dewing_control import cli
+from dewing_cli import main as cli
 from dewing_cli.paper import plan
 from paper_runs import TINY
 plan.QUICK = TINY

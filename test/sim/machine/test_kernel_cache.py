@@ -193,13 +193,13 @@ def test_files_that_cannot_be_read_are_replaced(pile, kind, spoil):
 
 
 def test_functions_of_one_name_are_kept_side_by_side(pile):
-    maker = '''
+    maker = """
 def scaler(factor):
     @kernel
     def run(x):
         return factor * x
     return run
-'''
+"""
     pile.path('top').write_text(TOP + maker)
 
     def misses():

@@ -169,11 +169,3 @@ def test_another_source_gives_another_name(monkeypatch):
     before = trim.fingerprint(WING)
     monkeypatch.setattr(machine, 'fingerprint', lambda *modules: f'changed {modules}')
     assert trim.fingerprint(WING) != before
-
-
-def test_the_cache_is_where_xdg_says_else_in_the_home(tmp_path, monkeypatch):
-    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
-    assert trim.cache_folder() == tmp_path / 'dewing'
-    monkeypatch.delenv('XDG_CACHE_HOME')
-    monkeypatch.setenv('HOME', str(tmp_path / 'home'))
-    assert trim.cache_folder() == tmp_path / 'home' / '.cache' / 'dewing'
