@@ -224,14 +224,14 @@ def test_every_command_explains_every_option(capsys):
 
 
 def test_the_help_imports_nothing_slow():
-    code = ('import sys\nfrom dewing_control import cli\ncli.build_parser()\n'
+    code = ('import sys\nfrom dewing_cli import main as cli\ncli.build_parser()\n'
             'print(sorted({"numba", "scipy", "matplotlib", "rich", "rclpy"} & set(sys.modules)))')
     result = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
     assert result.stdout.strip() == '[]', result.stderr
 
 
 def test_the_module_is_the_command():
-    result = subprocess.run([sys.executable, '-m', 'dewing_control', 'plate'],
+    result = subprocess.run([sys.executable, '-m', 'dewing_cli', 'plate'],
                             capture_output=True, text=True)
     assert result.returncode == 2
     assert result.stderr.count('\n') == 1 and 'Traceback' not in result.stderr
@@ -243,7 +243,7 @@ def test_the_disturbances_are_both_readings_of_the_paper():
 
 
 def test_a_command_runs_on_one_thread_unless_told_otherwise():
-    code = ("import os\nfrom dewing_control import cli\ncli.main(['plate'])\n"
+    code = ("import os\nfrom dewing_cli import main as cli\ncli.main(['plate'])\n"
             "print(os.environ['OPENBLAS_NUM_THREADS'], os.environ['NUMBA_NUM_THREADS'])")
     bare = {name: value for name, value in os.environ.items() if name not in cli.THREADS}
     for given, threads in (({}, '1 1'), ({'NUMBA_NUM_THREADS': '2'}, '1 2')):
