@@ -22,6 +22,7 @@ import numpy as np
 
 from dewing_sim import reduced
 from dewing_sim.files import check_free
+from dewing_sim.model import Model
 
 WARM_UP = 200               # steps
 CONFIGURATIONS = {'one_process': (), 'two_processes': ('dewing_control.node',),
@@ -33,9 +34,10 @@ def oscillator() -> reduced.Reduced:
     """Return a damped oscillation of camber at 72 Hz, stepped by 0.1 ms."""
     pole = 0.998 * np.exp(2.0j * np.pi * 72.0e-4)
     A = np.array([[pole.real, -pole.imag], [pole.imag, pole.real]])
-    return reduced.Reduced(
-        A, np.array([0.0, 1.0e-10]), np.array([[2.0e-5, 0.0], [3.0e-5, 0.0]]), 1.0e-4, 0.0,
-        np.array([2.6e-5, 4.0e-5]), ('camber_mean', 'camber_max'), 1.69e6, 1.56e6)
+    return reduced.Reduced(Model(
+        A, np.array([[0.0], [1.0e-10]]), np.array([[2.0e-5, 0.0], [3.0e-5, 0.0]]),
+        np.zeros((2, 1)), 1.0e-4, ('camber_mean', 'camber_max'), np.array([2.6e-5, 4.0e-5]),
+        1.69e6, v_squared_max=1.56e6))
 
 
 def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) -> dict[str, Any]:

@@ -68,7 +68,7 @@ def build_reduced(model: str) -> Built:
     """Return the linear plant of the npz file ``model``."""
     plant = reduced.load(model)
     rest = plant.rest()
-    text = str(plant.extra.get('case_yaml', ''))
+    text = plant.model.case_yaml
     case = parameters.to_mapping(parameters.from_yaml(text)) if text else {}
     identity = Identity.of('reduced', plant, rest, plant.v_squared_max, case)
     return Built(plant, rest, identity, plant.save, plant.load,

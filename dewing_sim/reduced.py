@@ -1,6 +1,6 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""A linear discrete-time plant about an operating point, behind the same protocol as the wing.
+"""A linear model as a plant, behind the same protocol as the wing.
 
     x[k+1] = A x[k] + B (V^2[k] - V0^2),    y[k] = y0 + C x[k] + w (1 - cos 2 pi f t[k])
 
@@ -8,17 +8,17 @@ with the states x (n,), outputs y (p,) in SI units, and w an optional additive d
 outputs with frequency f. There is no feed-through.
 """
 
-import dataclasses
 import math
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.files import new_file
-from dewing_sim.identity import loss_of_tension
+from dewing_sim.files import new_file, read_npz
+from dewing_sim.model import Model
 from dewing_sim.plant import SCALARS, Outputs
 
 
@@ -30,70 +30,72 @@ class State(NamedTuple):
     v_squared: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reduced:
-    """The plant (A, B, C) with time step ``dt`` about V0^2 = ``operating_v_squared``.
+    """The plant of ``model``, at rest at ``rest_v_squared``, by default at V0^2.
 
-    Rows of C, ``operating_outputs`` and ``disturbance`` belong to ``output_names``, which are
-    scalar fields of `Outputs`; those without a row are zero. ``extra`` holds whatever else the
-    file said (singular values, fit, case), unused here.
+    The outputs of the model are scalar fields of `Outputs`; those that it lacks are zero. Raises
+    `BadInput` for a model with other outputs or with a feed-through.
     """
 
-    A: np.ndarray                           # (n, n)
-    B: np.ndarray                           # (n,)
-    C: np.ndarray                           # (p, n)
-    dt: float                               # s
-    operating_v_squared: float              # V0^2
-    operating_outputs: np.ndarray           # (p,)
-    output_names: tuple[str, ...]           # (p,)
-    v_squared_slack: float                  # V^2 at the loss of tension
-    v_squared_max: float                    # V^2 beyond which the model says nothing
-    rest_v_squared: float = 0.0             # V^2 of the rest state
+    model: Model
+    rest_v_squared: float | None = None     # V^2 of the rest state
     disturbance: np.ndarray | None = None   # (p,)
     disturbance_frequency: float = 0.0      # Hz
-    extra: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self):
-        """Raise `BadInput` for shapes that do not fit or values that are not finite.
-
-        The matrices are laid out by rows, as from a file: BLAS rounds by layout.
-        """
-        for name in ('A', 'B', 'C'):
-            object.__setattr__(self, name, np.ascontiguousarray(getattr(self, name), float))
-        states, rows = self.B.size, len(self.output_names)
-        shapes = {'A': (states, states), 'B': (states,), 'C': (rows, states),
-                  'operating_outputs': (rows,)}
-        if self.disturbance is not None:
-            shapes['disturbance'] = (rows,)
-        for name, shape in shapes.items():
-            array = getattr(self, name)
-            if array.shape != shape or not np.all(np.isfinite(array)):
-                raise BadInput(f'reduced model: {name} must be finite and of shape {shape}, '
-                               f'got shape {array.shape}')
-        for name in self.output_names:
+        """Check what a model may have and a plant may not."""
+        for name in self.model.output_names:
             if name not in SCALARS or name in ('time', 'v_squared'):
                 raise BadInput(f'reduced model: {name!r} is not an output of a plant')
-        for name in ('dt', 'v_squared_slack', 'v_squared_max'):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise BadInput(f'reduced model: {name} = {getattr(self, name)} is not positive')
+        if np.any(self.model.d):
+            raise BadInput('reduced model: D is not zero; V^2 cannot act at once on a membrane')
+        rows = (len(self.model.output_names),)
+        if self.disturbance is not None and not (
+                self.disturbance.shape == rows and np.all(np.isfinite(self.disturbance))):
+            raise BadInput(f'reduced model: disturbance must be finite and of shape {rows}, '
+                           f'got shape {self.disturbance.shape}')
+
+    @property
+    def dt(self) -> float:
+        """Time step in s."""
+        return self.model.dt
+
+    @property
+    def v_squared_slack(self) -> float:
+        """V^2 at the loss of tension."""
+        return self.model.v_squared_slack
+
+    @property
+    def v_squared_max(self) -> float:
+        """V^2 beyond which the model says nothing."""
+        return self.model.v_squared_max
+
+    @cached_property
+    def gain(self) -> np.ndarray:
+        """B as a vector (n,), for the step at 10 kHz."""
+        return self.model.b[:, 0].copy()
 
     def trim(self, v_squared: float) -> State:
         """Return the steady state at constant ``v_squared``, at time 0."""
-        identity = np.eye(self.B.size)
+        model = self.model
         try:
-            x = np.linalg.solve(identity - self.A, self.B * (v_squared - self.operating_v_squared))
+            x = np.linalg.solve(np.eye(model.order) - model.a,
+                                self.gain * (v_squared - model.operating_v_squared))
         except np.linalg.LinAlgError:
             raise BadInput('reduced model: a pole at 1 leaves no steady state') from None
         return State(0, x, v_squared)
 
     def rest(self) -> State:
         """Return the steady state at ``rest_v_squared``, at time 0."""
-        return self.trim(self.rest_v_squared)
+        return self.trim(self.model.operating_v_squared if self.rest_v_squared is None
+                         else self.rest_v_squared)
 
     def step(self, state: State, v_squared: float) -> State:
         """Return the state one ``dt`` later; raise `Diverged` when it is not finite."""
+        model = self.model
         with np.errstate(over='ignore', invalid='ignore'):
-            x = self.A @ state.x + self.B * (v_squared - self.operating_v_squared)
+            x = model.a @ state.x + self.gain * (v_squared - model.operating_v_squared)
         if not math.isfinite(x.sum()):
             raise Diverged(f'reduced model: the state is not finite after step {state.step + 1}; '
                            'the model or the loop is unstable', state)
@@ -101,84 +103,49 @@ class Reduced:
 
     def observe(self, state: State) -> Outputs:
         """Return the outputs of ``state``."""
-        y = self.operating_outputs + self.C @ state.x
-        time = state.step * self.dt
+        y = self.model.operating_outputs + self.model.c @ state.x
+        time = state.step * self.model.dt
         if self.disturbance is not None:
             phase = 2.0 * math.pi * self.disturbance_frequency * time
             y = y + self.disturbance * (1.0 - math.cos(phase))
         values = dict.fromkeys(SCALARS, 0.0)
-        values.update(zip(self.output_names, y.tolist()))
+        values.update(zip(self.model.output_names, y.tolist()))
         values.update(time=time, v_squared=state.v_squared, coupling_iterations=0)
         return Outputs(**values)
 
-    def save(self, path, state: State):
+    def save(self, path: str | Path, state: State) -> None:
         """Write ``state`` to the npz file ``path``."""
         with new_file(path, overwrite=True) as file:
             np.savez(file, step=state.step, x=state.x, v_squared=state.v_squared)
 
-    def load(self, path) -> State:
+    def load(self, path: str | Path) -> State:
         """Return a saved state; raise `BadInput` if it is not one of this plant."""
-        with _arrays(path) as arrays:
-            try:
-                state = State(int(arrays['step']), arrays['x'], float(arrays['v_squared']))
-            except KeyError as error:
-                raise BadInput(f'{path}: not a saved state, {error.args[0]}') from None
-        if state.x.shape != self.B.shape:
-            raise BadInput(f'{path}: {state.x.size} states saved, the model has {self.B.size}')
+        with read_npz(path, 'a saved state') as arrays:
+            state = State(int(arrays['step']), arrays['x'], float(arrays['v_squared']))
+        if state.x.shape != (self.model.order,):
+            raise BadInput(f'{path}: {state.x.size} states saved, the model has '
+                           f'{self.model.order}')
         return state
 
 
-_OWN = tuple(item.name for item in dataclasses.fields(Reduced) if item.name != 'extra')
-_TEXTS = ('output_names',)
-_ARRAYS = ('A', 'B', 'C', 'operating_outputs', 'disturbance')
+def save(path: str | Path, plant: Reduced, overwrite: bool = False) -> None:
+    """Write ``plant`` to an npz file that both `load` and `Model.load` read."""
+    own = {name: value for name, value in vars(plant).items()
+           if name in _OWN and value is not None}
+    with new_file(path, overwrite) as file:
+        np.savez(file, **plant.model.arrays() | own)
 
 
-def save(path, plant: Reduced):
-    """Write ``plant`` to the npz file ``path``; `load` returns it."""
-    own = {name: getattr(plant, name) for name in _OWN if getattr(plant, name) is not None}
-    with open(path, 'wb') as file:
-        np.savez(file, D=np.zeros(len(plant.output_names)), **own, **plant.extra)
-
-
-def load(path) -> Reduced:
-    """Read a model written by `save` or by identification; further keys go to ``extra``.
-
-    Limits of V^2 that are not in the file follow from the case in it. Raises `BadInput` if the
-    file is not a model, or has a feed-through D.
-    """
-    with _arrays(path) as arrays:
-        values = {name: arrays[name] for name in arrays.files}
-    if 'v_squared_slack' not in values and values.get('case_yaml'):
-        values = {**_limits(str(values['case_yaml'])), **values}
-    if np.any(values.pop('D', 0.0)):
-        raise BadInput(f'{path}: D is not zero; V^2 cannot act at once on a membrane')
-    required = [item.name for item in dataclasses.fields(Reduced)
-                if item.default is dataclasses.MISSING
-                and item.default_factory is dataclasses.MISSING]
-    missing = [name for name in required if name not in values]
-    if missing:
-        raise BadInput(f"{path}: not a reduced model, {', '.join(missing)} missing")
-    own = {name: _converted(name, values.pop(name)) for name in _OWN if name in values}
-    return Reduced(**own, extra=values)
-
-
-def _limits(case_yaml: str) -> dict[str, float]:
-    case = parameters.from_yaml(case_yaml)
-    return dict(v_squared_slack=loss_of_tension(case),
-                v_squared_max=case.actuation.voltage_limit**2)
-
-
-def _converted(name: str, value: np.ndarray) -> Any:
-    if name in _TEXTS:
-        return tuple(str(word) for word in value)
-    if name == 'B':
-        return np.asarray(value, float).reshape(-1)
-    return np.asarray(value, float) if name in _ARRAYS else float(value)
-
-
-def _arrays(path):
-    """Open the npz file ``path``; raise `BadInput` if that fails."""
+def load(path: str | Path) -> Reduced:
+    """Read a plant written by `save`, or a model; raise `BadInput` if it is not one."""
+    with read_npz(path, 'a linear model') as arrays:
+        own = {name: np.asarray(arrays[name], float) if name == 'disturbance'
+               else float(arrays[name]) for name in _OWN if name in arrays}
+        model = Model.of_arrays(arrays)
     try:
-        return np.load(path, allow_pickle=False)
-    except (OSError, ValueError) as error:
-        raise BadInput(f'{path}: cannot be read as npz ({error})') from None
+        return Reduced(model, **own)
+    except BadInput as error:
+        raise BadInput(f'{path}: {error}') from None
+
+
+_OWN = ('rest_v_squared', 'disturbance', 'disturbance_frequency')

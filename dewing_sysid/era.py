@@ -13,21 +13,7 @@ import numpy as np
 from scipy import linalg
 
 from dewing_sim.errors import BadInput
-
-
-@dataclass(frozen=True)
-class Realisation:
-    """Matrices of a state-space model; no units, the caller knows them."""
-
-    a: np.ndarray                       # (order, order)
-    b: np.ndarray                       # (order, inputs)
-    c: np.ndarray                       # (outputs, order)
-    d: np.ndarray                       # (outputs, inputs)
-
-    @property
-    def order(self) -> int:
-        """Return the number of states."""
-        return self.a.shape[0]
+from dewing_sim.state_space import Matrices
 
 
 @dataclass(frozen=True)
@@ -50,7 +36,7 @@ class HankelFactors:
         floor = max(self.shifted.shape) * np.finfo(float).eps * self.singular_values[0]
         return int(np.sum(self.singular_values > floor))
 
-    def realise(self, order: int) -> Realisation:
+    def realise(self, order: int) -> Matrices:
         """Return the balanced realisation of ``order`` states (paper eq. 9).
 
         A = S^-1/2 U^T H1 V S^-1/2, B and C the first columns and rows of S^1/2 V^T and U S^1/2.
@@ -65,7 +51,7 @@ class HankelFactors:
         a = (left.T @ self.shifted @ right.T) / np.outer(root, root)
         b = root[:, None] * right[:, :inputs]
         c = left[:outputs] * root * self.scale[:, None]
-        return Realisation(a, b, c, self.direct)
+        return Matrices(a, b, c, self.direct)
 
 
 LARGEST = 150                           # block rows and columns that decompose in some 20 ms
@@ -113,12 +99,12 @@ def _hankel(h: np.ndarray, rows: int, columns: int, stride: int) -> np.ndarray:
     return blocks.transpose(2, 0, 3, 1).reshape(rows * outputs, columns * inputs)
 
 
-def era(markov: np.ndarray, order: int, rows: int | None = None) -> Realisation:
+def era(markov: np.ndarray, order: int, rows: int | None = None) -> Matrices:
     """Return the ERA model of ``order`` states; see `factorise` and `HankelFactors.realise`."""
     return factorise(markov, rows).realise(order)
 
 
-def delayed(realisation: Realisation) -> Realisation:
+def delayed(realisation: Matrices) -> Matrices:
     """Return the model whose input arrives one sample later; D moves into C.
 
     x'[k] = (x[k], u[k-1]): A' = [[A, B], [0, 0]], B' = (0, I), C' = [C, D], D' = 0.  Markov
@@ -129,8 +115,8 @@ def delayed(realisation: Realisation) -> Realisation:
     a = np.zeros((order + inputs, order + inputs))
     a[:order] = np.hstack([realisation.a, realisation.b])
     b = np.vstack([np.zeros((order, inputs)), np.eye(inputs)])
-    return Realisation(a, b, np.hstack([realisation.c, realisation.d]),
-                       np.zeros_like(realisation.d))
+    return Matrices(a, b, np.hstack([realisation.c, realisation.d]),
+                    np.zeros_like(realisation.d))
 
 
 def okid(u: np.ndarray, y: np.ndarray, samples: int, lags: int) -> np.ndarray:
@@ -174,7 +160,7 @@ def _unroll(alpha: np.ndarray, beta: np.ndarray, samples: int) -> np.ndarray:
     return h.transpose(1, 2, 0)
 
 
-def reflect_unstable(realisation: Realisation) -> tuple[Realisation, np.ndarray]:
+def reflect_unstable(realisation: Matrices) -> tuple[Matrices, np.ndarray]:
     """Mirror eigenvalues outside the unit circle to 1 / conj(z); return also the originals.
 
     The second value, empty for a stable model, is what must be reported.
@@ -186,5 +172,4 @@ def reflect_unstable(realisation: Realisation) -> tuple[Realisation, np.ndarray]
     moved = eigenvalues.copy()
     moved[outside] = 1.0 / eigenvalues[outside].conj()
     a = (vectors * moved) @ np.linalg.inv(vectors)
-    return (Realisation(a.real, realisation.b, realisation.c, realisation.d),
-            eigenvalues[outside])
+    return realisation._replace(a=a.real), eigenvalues[outside]

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from dewing_sim.files import new_file
+from dewing_sim.model import Model
 from dewing_sysid.experiment import Record
 from dewing_sysid.identify import Identification
-from dewing_sysid.model import Model
 from dewing_sysid.plan import EXPERIMENT, FRESH, SWEEP
 
 DRAWN_VALUES = 60                       # singular values shown

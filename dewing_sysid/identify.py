@@ -10,10 +10,11 @@ import yaml
 
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.model import Model
 from dewing_sim.plant import Plant
+from dewing_sim.state_space import Matrices
 from dewing_sysid import era
 from dewing_sysid.experiment import Record, run_all, unit
-from dewing_sysid.model import Model, nrmse_fit
 from dewing_sysid.plan import EXPERIMENT, FRESH, HALF, SWEEP, make, samples, time_scale
 from dewing_sysid.settings import Realisation, Settings
 
@@ -96,7 +97,7 @@ def factorise(record: Record, settings: Settings, length: int) -> era.HankelFact
     return era.factorise(h[:, :, 1:] if settings.realisation.at_once == 'state' else h)
 
 
-def realise(factors: era.HankelFactors, chosen: Realisation, order: int) -> era.Realisation:
+def realise(factors: era.HankelFactors, chosen: Realisation, order: int) -> Matrices:
     """Return the model of ``order`` states; raise `BadInput` if the record does not hold them."""
     most = most_states(factors, chosen)
     if order > most:
@@ -111,13 +112,14 @@ def most_states(factors: era.HankelFactors, chosen: Realisation) -> int:
     return factors.rank + (chosen.at_once == 'state')
 
 
-def _model(realisation: era.Realisation, factors: era.HankelFactors, record: Record,
+def _model(realisation: Matrices, factors: era.HankelFactors, record: Record,
            identity: Identity) -> Model:
     return Model(
         realisation.a, realisation.b, realisation.c, np.zeros_like(realisation.d), record.dt,
-        record.operating_v_squared, record.baseline.mean(axis=1), record.names,
-        tuple(map(unit, record.names)), identity.v_squared_slack, identity.v_squared_max,
-        factors.singular_values, yaml.safe_dump({'/**': {'ros__parameters': identity.case}}))
+        record.names, record.baseline.mean(axis=1), identity.v_squared_slack,
+        v_squared_max=identity.v_squared_max, operating_v_squared=record.operating_v_squared,
+        units=tuple(map(unit, record.names)), singular_values=factors.singular_values,
+        case_yaml=yaml.safe_dump({'/**': {'ros__parameters': identity.case}}))
 
 
 def judge(model: Model, records: dict[str, Record]) -> Fits:
@@ -127,6 +129,15 @@ def judge(model: Model, records: dict[str, Record]) -> Fits:
                       for name, fit in zip(record.names,
                                            nrmse_fit(record.y, model.simulate(record.u)))}
                 for run, record in records.items()}
+
+
+def nrmse_fit(measured: np.ndarray, predicted: np.ndarray) -> np.ndarray:
+    """Return 100 (1 - |y - yhat| / |y - mean(y)|) percent of each row; 100 is perfect."""
+    error = np.linalg.norm(measured - predicted, axis=1)
+    spread = np.linalg.norm(measured - measured.mean(axis=1, keepdims=True), axis=1)
+    if not spread.all():
+        raise BadInput(f'output {int(np.argmin(spread))} is constant: the fit is not defined')
+    return 100.0 * (1.0 - error / spread)
 
 
 def linearity(records: dict[str, Record]) -> dict[str, float]:

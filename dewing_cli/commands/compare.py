@@ -86,16 +86,14 @@ def _controllers(text: str | None, kind: str) -> tuple:
 def _plan(arguments: argparse.Namespace, settings: Any, folder: Any, duration: float) -> Any:
     from dewing_control.model.identified import identify
     from dewing_control.trial.comparison import Plan
-    from dewing_sim import parameters, reduced
+    from dewing_sim import parameters
     from dewing_sim.build import build_wing
     case = options.load_case(arguments)
     built = build_wing(case)
     model = arguments.model
     if model is None:
         model = str(folder / 'model.npz')
-        found = identify(built)
-        folder.mkdir(parents=True, exist_ok=True)
-        reduced.save(model, found)
+        identify(built).save(model, arguments.force)
     settings = parameters.replace(settings, {'model': model})
     return Plan(case, settings, built.identity, duration,
                 max(duration - AVERAGED, 0.5 * duration))

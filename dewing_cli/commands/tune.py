@@ -48,7 +48,6 @@ def run(arguments: argparse.Namespace) -> None:
     settings, bounds = _check(arguments)
     from dewing_control.model.design import Design
     from dewing_control.tuning.tuning import tune
-    from dewing_sim import reduced
     from dewing_sim.build import build_wing
     built = build_wing(options.load_case(arguments))
     model = _model(arguments, built)
@@ -56,8 +55,7 @@ def run(arguments: argparse.Namespace) -> None:
     with bar('tuning', 'generations', arguments.quiet) as show:
         judged = tune(settings, built.identity, design, bounds, progress=show)
     folder = Path(arguments.out)
-    folder.mkdir(parents=True, exist_ok=True)
-    reduced.save(folder / 'model.npz', model)
+    model.save(folder / 'model.npz', arguments.force)
     metrics = _verify(arguments, built, model, design, judged)
     metrics['printed'] = _printed(built, design, judged.settings, bounds)
     _write_settings(folder, judged.settings, arguments.force)
@@ -100,9 +98,9 @@ def _check(arguments: argparse.Namespace) -> tuple[Any, Any]:
 
 def _model(arguments: argparse.Namespace, built: Any) -> Any:
     from dewing_control.model.identified import identify
-    from dewing_sim import reduced
+    from dewing_sim.model import Model
     if arguments.model:
-        return reduced.load(arguments.model)
+        return Model.load(arguments.model)
     with bar('identifying', 'runs', arguments.quiet) as show:
         return identify(built, lambda fraction: show(round(100 * fraction), 100))
 

@@ -19,7 +19,7 @@ from dewing_control.tuning.printed import pi_limit, printed_gains
 from dewing_control.tuning.tuning import tune
 from dewing_sim import parameters
 from dewing_sim.identity import Identity
-from dewing_sim.reduced import Reduced
+from dewing_sim.model import Model
 
 TUNING_COST = 2.0e4         # ms
 
@@ -60,7 +60,7 @@ class Designed:
             'printed': printed_gains(identity),
             'identity': experiments.identity(inputs[self.experiments]).to_yaml(),
             'judged': {name: _report(item) for name, item in judged.items()}}
-        return Result(values, {'a': model.A, 'b': model.B, 'c': model.C,
+        return Result(values, {'a': model.a, 'b': model.b[:, 0], 'c': model.c,
                                'operating_outputs': model.operating_outputs,
                                **_loops(judged['shipped'])})
 
@@ -76,26 +76,22 @@ def readings(settings: ControllerSettings, identity: Identity) -> dict[str, dict
             'kd_times_3000': as_printed | {'pid.kd': 3000.0 * printed['kd']}}
 
 
-def _identify(found: Result) -> tuple[Reduced, Identity]:
+def _identify(found: Result) -> tuple[Model, Identity]:
     from dewing_sysid.identify import identify
     from dewing_sysid.settings import Settings
     identity = experiments.identity(found)
-    model = identify(experiments.records(found, OUTPUTS),
-                     parameters.load('sysid', Settings, CHANGES), identity).model
-    reduced = Reduced(model.a, model.b[:, 0], model.c, model.dt, model.operating_v_squared,
-                      model.operating_outputs, model.output_names, model.v_squared_slack,
-                      model.v_squared_max, model.operating_v_squared)
-    return reduced, identity
+    return identify(experiments.records(found, OUTPUTS),
+                    parameters.load('sysid', Settings, CHANGES), identity).model, identity
 
 
-def _described(model: Reduced, design: Design) -> dict[str, Any]:
-    poles = np.linalg.eigvals(model.A).astype(complex)
+def _described(model: Model, design: Design) -> dict[str, Any]:
+    poles = model.poles.astype(complex)
     rates = np.log(poles[poles.imag > 0.0]) / model.dt
     rates = rates[np.argsort(np.abs(rates))]
     return {'dt': model.dt, 'output_names': list(model.output_names),
             'operating_v_squared': model.operating_v_squared,
             'v_squared_slack': model.v_squared_slack, 'v_squared_max': model.v_squared_max,
-            'static_gain': design.static_gain, 'order': int(model.B.size),
+            'static_gain': design.static_gain, 'order': model.order,
             'modes_hz': (np.abs(rates) / (2.0 * np.pi)).tolist(),
             'modes_damping': (-rates.real / np.abs(rates)).tolist()}
 
@@ -115,15 +111,16 @@ def _loops(judged: Judged) -> dict[str, np.ndarray]:
     return arrays
 
 
-def reduced_of(result: Result) -> Reduced:
-    """Return the identified model as a plant."""
+def model_of(result: Result) -> Model:
+    """Return the identified model."""
     values = result.values
-    return Reduced(result['a'], result['b'], result['c'], values['dt'],
-                   values['operating_v_squared'], result['operating_outputs'],
-                   tuple(values['output_names']), values['v_squared_slack'],
-                   values['v_squared_max'], values['operating_v_squared'])
+    return Model(result['a'], result['b'][:, None], result['c'],
+                 np.zeros((len(result['c']), 1)), values['dt'], tuple(values['output_names']),
+                 result['operating_outputs'], values['v_squared_slack'],
+                 v_squared_max=values['v_squared_max'],
+                 operating_v_squared=values['operating_v_squared'])
 
 
 def design_of(result: Result) -> Design:
     """Return the normalised model of mean camber."""
-    return Design.of(reduced_of(result), 'camber_mean')
+    return Design.of(model_of(result), 'camber_mean')

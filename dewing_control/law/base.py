@@ -104,7 +104,10 @@ class Law(ABC):
         """Return the next memory and V^2."""
 
     def compensator(self) -> Any:
-        """Return the `Compensator` without saturation, from r - a to V^2/V_L^2, for tuning."""
+        """Return the law without saturation, from r - a to V^2/V_L^2, for tuning.
+
+        It is a `Matrices` or a `control.StateSpace`.
+        """
         raise BadInput(f'{type(self).__name__} has no compensator, which tuning needs')
 
     @classmethod

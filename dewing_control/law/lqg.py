@@ -21,10 +21,10 @@ from scipy import linalg
 from dewing_control.law.base import DisturbanceModel, Law, Settings, ramp
 from dewing_control.law.observer import Estimator, Observer
 from dewing_control.model.design import Design
-from dewing_control.model.loop import Compensator
 from dewing_sim.identity import Identity
 from dewing_sim.parameters import choice, real
 from dewing_sim.plant import Measurement
+from dewing_sim.state_space import Matrices
 
 LEAST_CAMBER = 0.1          # of the passive one, below which w/a would be ill-conditioned
 
@@ -127,13 +127,13 @@ class Lqg(Law):
         held = (reference - 1.0) / model.static_gain
         return model.operating_input + held * self.hold - float(self.gain @ z)
 
-    def compensator(self) -> Compensator:
+    def compensator(self) -> Matrices:
         """Return the law without saturation, from r - a to w."""
         observer, gain = self.observer, self.gain
         corrected = np.eye(gain.size) - np.outer(observer.gain, observer.outlet)
         advance = observer.transition - np.outer(observer.inlet, gain)
-        return Compensator(advance @ corrected, -advance @ observer.gain, -gain @ corrected,
-                           float(gain @ observer.gain))
+        return Matrices.siso(advance @ corrected, -advance @ observer.gain, -gain @ corrected,
+                             float(gain @ observer.gain))
 
 
 def regulator(model: Design, control_weight: float) -> tuple[np.ndarray, np.ndarray]:

@@ -23,11 +23,11 @@ from dewing_control.law import lqg
 from dewing_control.law.base import Law, Settings
 from dewing_control.law.lqg import Lqg
 from dewing_control.model.design import Design
-from dewing_control.model.loop import Compensator
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
 from dewing_sim.parameters import count, real
 from dewing_sim.plant import Measurement
+from dewing_sim.state_space import Matrices
 
 TOLERANCE = 1.0e-6          # of the programme, in V_L^2
 MOST_ITERATIONS = 600       # which bound the time of a step; bounds hold whatever is left
@@ -192,7 +192,7 @@ class Mpc(Law):
         w = min(max(float(free[0] + solution.x[0]), applied - change[0]), applied + change[0])
         return w, solution.x.copy(), solution.y.copy()
 
-    def compensator(self) -> Compensator:
+    def compensator(self) -> Matrices:
         """Return the law without bounds, which is LQG."""
         return self.base.compensator()
 

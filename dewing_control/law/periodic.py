@@ -21,10 +21,10 @@ from scipy import linalg
 from dewing_control.law import pid
 from dewing_control.law.base import DisturbanceModel, Law, Settings
 from dewing_control.law.pid import Pid, PidGains
-from dewing_control.model.loop import Compensator
 from dewing_sim.identity import Identity
 from dewing_sim.parameters import real
 from dewing_sim.plant import Measurement
+from dewing_sim.state_space import Matrices, frequency_response
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class Periodic(Law):
         """Return the controller that ``settings`` describe for the plant of ``identity``."""
         base = Pid.of(settings, identity)
         angles = settings.disturbance_model.angles(base.dt)
-        response = base.compensator().response(
-            np.array(angles) / (2.0 * np.pi * base.dt), base.dt)
+        response = frequency_response(
+            base.compensator(), np.array(angles) / (2.0 * np.pi * base.dt), base.dt)[0]
         rate = settings.periodic.learning_rate * base.dt
         return cls(base, tuple(cmath.exp(1j * angle) for angle in angles),
                    tuple(complex(rate * value) for value in response))
@@ -87,11 +87,11 @@ class Periodic(Law):
             rotation * (phasor + learning * error) for rotation, phasor, learning
             in zip(self.rotations, memory.phasors, self.learning))), v_squared
 
-    def compensator(self) -> Compensator:
+    def compensator(self) -> Matrices:
         """Return the law without saturation, from the normalised error to V^2/V_L^2."""
         base = self.base.compensator()
         blocks = [np.array([[r.real, -r.imag], [r.imag, r.real]]) for r in self.rotations]
         inlets = [[(r * g).real, (r * g).imag] for r, g in zip(self.rotations, self.learning)]
-        return Compensator(
-            linalg.block_diag(base.a, *blocks), np.concatenate([base.b, *inlets]),
-            np.concatenate([base.c, np.tile([1.0, 0.0], len(blocks))]), base.d)
+        return Matrices.siso(
+            linalg.block_diag(base.a, *blocks), np.concatenate([base.b[:, 0], *inlets]),
+            np.concatenate([base.c[0], np.tile([1.0, 0.0], len(blocks))]), base.d[0, 0])

@@ -21,10 +21,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dewing_control.law.base import Law, Settings, ramp
-from dewing_control.model.loop import Compensator
 from dewing_sim.identity import Identity
 from dewing_sim.parameters import real
 from dewing_sim.plant import Measurement
+from dewing_sim.state_space import Matrices
 
 
 @dataclass(frozen=True)
@@ -110,13 +110,13 @@ class Pid(Law):
         total += math.expm1(-self.dt / gains.tracking_time) * excess
         return Memory(reference, total, derivative, error), v_squared
 
-    def compensator(self) -> Compensator:
+    def compensator(self) -> Matrices:
         """Return the law without saturation, from e to u, with the states s, d and e before."""
         gains = self.gains
         fading = gains.derivative_filter / (gains.derivative_filter + self.dt)
         slope = gains.kd / (gains.derivative_filter + self.dt)
         fresh = gains.kp + self.dt * gains.ki
-        return Compensator(
+        return Matrices.siso(
             np.array([[1.0, 0.0, -gains.kp], [0.0, fading, -slope], [0.0, 0.0, 0.0]]),
             np.array([fresh, slope, 1.0]), np.array([1.0, fading, -gains.kp - slope]),
             fresh + slope)

@@ -15,27 +15,29 @@ model identified from V^2 serves both.
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import linalg
 
-from dewing_sim import reduced
 from dewing_sim.errors import BadInput
-from dewing_sim.reduced import Reduced
+from dewing_sim.model import Model
+
+if TYPE_CHECKING:
+    from control import StateSpace
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A (n, n), B (n,), C (n,) of the deviations, sampling time ``dt`` (s) and u0."""
+    """The ``model`` from w to one camber, w in V_L^2 and the camber in that at rest.
 
-    a: np.ndarray
-    b: np.ndarray
-    c: np.ndarray
-    dt: float
-    operating_input: float
+    `Design.model` is a `Model` like any other: hand `Design.to_control` to python-control.
+    """
+
+    model: Model
 
     @classmethod
-    def of(cls, model: Reduced, output: str, steps: int = 1) -> 'Design':
+    def of(cls, model: Model, output: str, steps: int = 1) -> 'Design':
         """Return the model of ``output``, held and sampled every ``steps`` of its time steps.
 
         Raises `BadInput` if the model lacks the output, has no positive static gain or is
@@ -48,10 +50,11 @@ class Design:
         camber = float(model.operating_outputs[row])
         if not camber > 0.0:
             raise BadInput(f'the model has {output} = {camber:g} m at rest, not a positive camber')
-        a, b = _every(model.A, model.B, steps)
-        design = cls(a, b * model.v_squared_slack, model.C[row] / camber, steps * model.dt,
-                     model.operating_v_squared / model.v_squared_slack)
-        radius = float(np.abs(np.linalg.eigvals(design.a)).max())
+        a, b = _every(model.a, model.b[:, 0], steps)
+        slack = model.v_squared_slack
+        design = cls.normalised(a, b * slack, model.c[row] / camber, steps * model.dt,
+                                model.operating_v_squared / slack, model.v_squared_max / slack)
+        radius = design.model.spectral_radius
         if radius >= 1.0:
             raise BadInput(f'the model is unstable (spectral radius {radius:.6f}); identify it '
                            'again with realisation.unstable_poles = reflect or a longer window')
@@ -60,10 +63,49 @@ class Design:
                            f'{design.static_gain:.3g}); identify it again')
         return design
 
+    @classmethod
+    def normalised(cls, a: np.ndarray, b: np.ndarray, c: np.ndarray, dt: float,
+                   operating_input: float, largest: float = 1.0) -> 'Design':
+        """Return the model of A (n, n), B (n,), C (n,), time step (s), u0 and largest u."""
+        return cls(Model(
+            a, b[:, None], c[None], np.zeros((1, 1)), dt, ('camber',), np.ones(1), 1.0,
+            v_squared_max=largest, operating_v_squared=operating_input, units=('a_ref',),
+            input_name='w', input_unit='V_L^2'))
+
+    def with_matrices(self, a: np.ndarray, b: np.ndarray, c: np.ndarray | None = None) -> 'Design':
+        """Return the same about other matrices, with the same C by default."""
+        c = self.c if c is None else c
+        return Design(replace(self.model, a=a, b=b[:, None], c=c[None]))
+
+    @cached_property
+    def a(self) -> np.ndarray:
+        """A (n, n)."""
+        return self.model.a
+
+    @cached_property
+    def b(self) -> np.ndarray:
+        """B as a vector (n,)."""
+        return self.model.b[:, 0].copy()
+
+    @cached_property
+    def c(self) -> np.ndarray:
+        """C as a vector (n,)."""
+        return self.model.c[0]
+
+    @cached_property
+    def dt(self) -> float:
+        """Sampling time in s."""
+        return self.model.dt
+
+    @cached_property
+    def operating_input(self) -> float:
+        """Return u0, V^2/V_L^2 at the operating point."""
+        return self.model.operating_v_squared
+
     @property
     def order(self) -> int:
         """Return the number of states."""
-        return self.b.size
+        return self.model.order
 
     @cached_property
     def steady(self) -> np.ndarray:
@@ -86,8 +128,8 @@ class Design:
         moved = poles.copy()
         moved[waves] = np.exp(np.sqrt(ratio) * np.log(poles[waves]))
         inlet = np.linalg.solve(modes, self.b) * (1.0 - moved) / (1.0 - poles)
-        return replace(self, a=((modes * moved) @ np.linalg.inv(modes)).real,
-                       b=(modes @ inlet).real)
+        return self.with_matrices(((modes * moved) @ np.linalg.inv(modes)).real,
+                                  (modes @ inlet).real)
 
     def fundamental(self) -> 'Design':
         """Return the oscillator with frequency and damping of the main pole and the same G0.
@@ -105,8 +147,8 @@ class Design:
         stiffness = abs(rate)**2
         transition = linalg.expm(self.dt * np.array(
             [[0.0, 1.0, 0.0], [-stiffness, 2.0 * rate.real, stiffness], [0.0, 0.0, 0.0]]))
-        return replace(self, a=transition[:2, :2], b=transition[:2, 2],
-                       c=np.array([self.static_gain, 0.0]))
+        return self.with_matrices(transition[:2, :2], transition[:2, 2],
+                                  np.array([self.static_gain, 0.0]))
 
     @cached_property
     def spectrum(self) -> tuple[np.ndarray, np.ndarray]:
@@ -116,7 +158,11 @@ class Design:
 
     def response(self, frequency: np.ndarray) -> np.ndarray:
         """Return C (zI - A)^-1 B at ``frequency`` (Hz, shape (m,)), complex (m,)."""
-        return frequency_response(self.a, self.b, self.c, 0.0, frequency, self.dt)
+        return self.model.frequency_response(frequency)[0]
+
+    def to_control(self) -> 'StateSpace':
+        """Return the `control.StateSpace` from w - u0 to the camber minus one."""
+        return self.model.to_control()
 
 
 def load(path: str, output: str, period: float) -> Design:
@@ -127,20 +173,13 @@ def load(path: str, output: str, period: float) -> Design:
     if not path:
         raise BadInput('model is empty: this kind of controller needs the npz file of an '
                        'identified model, as written by dewing identify and dewing tune')
-    model = reduced.load(path)
+    model = Model.load(path)
     steps = round(period / model.dt)
     if steps < 1 or not math.isclose(steps * model.dt, period, rel_tol=1.0e-6):
         raise BadInput(f'{path}: the model steps by {model.dt:g} s, of which the control period, '
                        f'{period:g} s, is no multiple; identify the wing at its own time step, '
                        'or change command.period_steps')
     return Design.of(model, output, steps)
-
-
-def frequency_response(a, b, c, d, frequency, dt: float) -> np.ndarray:
-    """Return c (zI - a)^-1 b + d for z = exp(2 pi i f dt), complex (m,)."""
-    z = np.exp(2j * np.pi * np.asarray(frequency) * dt)
-    resolvent = np.linalg.solve(z[:, None, None] * np.eye(len(b)) - a, b[:, None])
-    return (c @ resolvent)[:, 0] + d
 
 
 def _every(a: np.ndarray, b: np.ndarray, steps: int) -> tuple[np.ndarray, np.ndarray]:

@@ -3,15 +3,13 @@
 """The model of a wing that control is designed on: identified once, then kept on disk."""
 
 import hashlib
-import tempfile
-from pathlib import Path
 from typing import Callable
 
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.build import Built
 from dewing_sim.machine import caches
 from dewing_sim.machine import fingerprint as machine
-from dewing_sim.reduced import Reduced
+from dewing_sim.model import Model
 from dewing_sim.rest.trim import fingerprint
 
 # Control needs the slow response of the wake as much as the modes: a window of 1.2 c/U, as in the
@@ -21,18 +19,15 @@ CHANGES = {'experiment.record': 9.6, 'realisation.window': 9.6, 'realisation.ord
 OUTPUTS = ('camber_mean',)
 
 
-def identify(built: Built, progress: Callable[[float], None] = lambda fraction: None) -> Reduced:
+def identify(built: Built, progress: Callable[[float], None] = lambda fraction: None) -> Model:
     """Return the model of mean camber of a wing at rest, from the cache or by experiment."""
     name = f'model-{_key(built)}.npz'
-    model = caches.recall(name, reduced.load)
+    model = caches.recall(name, Model.load)
     if model is None:
         from dewing_sysid.identify import identify_plant
-        found = identify_plant(built.plant, built.rest, built.identity, _settings(), OUTPUTS,
+        model = identify_plant(built.plant, built.rest, built.identity, _settings(), OUTPUTS,
                                progress=progress).model
-        caches.keep(name, found.save)
-        with tempfile.TemporaryDirectory() as folder:
-            found.save(Path(folder) / name)
-            model = reduced.load(Path(folder) / name)
+        caches.keep(name, model.save)
     return model
 
 

@@ -7,21 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import trapezoid
 
-from dewing_control.model.design import Design, frequency_response
-
-
-@dataclass(frozen=True, eq=False)
-class Compensator:
-    """z+ = A z + B e, w = C z + D e, from the error e = r - a to w; B and C have shape (m,)."""
-
-    a: np.ndarray
-    b: np.ndarray
-    c: np.ndarray
-    d: float
-
-    def response(self, frequency: np.ndarray, dt: float) -> np.ndarray:
-        """Return its frequency response at ``frequency`` (Hz), complex (m,)."""
-        return frequency_response(self.a, self.b, self.c, self.d, frequency, dt)
+from dewing_control.model.design import Design
+from dewing_sim.state_space import Matrices, frequency_response
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +21,10 @@ class Loop:
     poles: np.ndarray               # of the closed loop
 
     @classmethod
-    def of(cls, design: Design, compensator: Compensator) -> 'Loop':
-        """Return the loop of ``compensator`` around ``design``."""
+    def of(cls, design: Design, compensator: Matrices) -> 'Loop':
+        """Return the loop of ``compensator``, from the error r - a to w, around ``design``."""
         frequency, plant = design.spectrum
-        return cls(frequency, plant, compensator.response(frequency, design.dt),
+        return cls(frequency, plant, frequency_response(compensator, frequency, design.dt)[0],
                    np.linalg.eigvals(closed_matrix(design, compensator)))
 
     @property
@@ -79,16 +66,16 @@ class Loop:
         return float(margins.min()) if margins.size else 180.0
 
 
-def sensitivity_at(design: Design, compensator: Compensator, frequency: float) -> complex:
+def sensitivity_at(design: Design, compensator: Matrices, frequency: float) -> complex:
     """Return S at one ``frequency`` (Hz), zero where the compensator resonates."""
     point = np.array([frequency * (1.0 + 1.0e-9)])      # beside its undamped poles
-    gain = design.response(point) * compensator.response(point, design.dt)
+    gain = design.response(point) * frequency_response(compensator, point, design.dt)[0]
     return complex(1.0 / (1.0 + gain[0]))
 
 
-def closed_matrix(design: Design, compensator: Compensator) -> np.ndarray:
+def closed_matrix(design: Design, compensator: Matrices) -> np.ndarray:
     """Return the transition matrix of the loop's states (x, z) with r constant."""
-    d, c = compensator.d, design.c
+    d, c = float(compensator.d[0, 0]), design.c
     return np.block([[design.a - d * np.outer(design.b, c), np.outer(design.b, compensator.c)],
                      [-np.outer(compensator.b, c), compensator.a]])
 

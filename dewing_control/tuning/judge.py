@@ -18,9 +18,10 @@ import numpy as np
 
 from dewing_control.law.registry import law
 from dewing_control.model.design import Design
-from dewing_control.model.loop import Compensator, Loop, closed_matrix, sensitivity_at
+from dewing_control.model.loop import Loop, closed_matrix, sensitivity_at
 from dewing_control.settings import ControllerSettings
 from dewing_sim.identity import Identity
+from dewing_sim.state_space import Matrices
 
 STEP_TIME = 0.05            # s
 FREQUENCY = 10.0            # Hz, of the disturbance
@@ -34,7 +35,7 @@ class Judged:
     """A law on the model; an unstable one has infinite cost."""
 
     settings: ControllerSettings
-    compensator: Compensator
+    compensator: Matrices           # from the error to w
     loop: Loop                      # at rest
     strained: Loop                  # at the lower tension
     sensitivity: complex            # S at 10 Hz
@@ -76,7 +77,7 @@ class Judged:
 def judge(settings: ControllerSettings, identity: Identity, model: Design, strained: Design,
           ) -> Judged:
     """Return how the law of ``settings`` does on ``model`` and on it at a lower tension."""
-    compensator = law(settings, identity, model).compensator()
+    compensator = Matrices.of(law(settings, identity, model).compensator())
     sensitivity = sensitivity_at(model, compensator, FREQUENCY)
     loops = [Loop.of(plant, compensator) for plant in (model, strained)]
     error = step_error(model, compensator) if loops[0].stable else np.array([math.inf])
@@ -85,10 +86,10 @@ def judge(settings: ControllerSettings, identity: Identity, model: Design, strai
                   _saturation(model, sensitivity, settings.reference.target - 1.0))
 
 
-def step_error(model: Design, compensator: Compensator) -> np.ndarray:
+def step_error(model: Design, compensator: Matrices) -> np.ndarray:
     """Return the error after a unit step of the camber or of its reference."""
     transition = closed_matrix(model, compensator)
-    inlet = np.concatenate([model.b * compensator.d, compensator.b])
+    inlet = np.concatenate([model.b * compensator.d[0, 0], compensator.b[:, 0]])
     state, error = np.zeros(inlet.size), np.empty(round(STEP_TIME / model.dt))
     for k in range(error.size):
         error[k] = 1.0 - model.c @ state[:model.order]

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A tuned law on the wing it was not designed on: the Navier-Stokes one, beside the model."""
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from dewing_control.trial.closed_loop import closed_loop, controller
 from dewing_control.tuning.judge import FREQUENCY, LOAD
 from dewing_sim.build import Built
 from dewing_sim.identity import Identity
+from dewing_sim.model import Model
 from dewing_sim.reduced import Reduced
 
 AVERAGED = 0.1              # s at the end of a run: one period of the disturbance
@@ -30,15 +30,14 @@ def on_wing(settings: ControllerSettings, built: Built, model: Design, duration:
     return run, figures
 
 
-def on_model(settings: ControllerSettings, identity: Identity, reduced: Reduced, model: Design,
+def on_model(settings: ControllerSettings, identity: Identity, model: Model, design: Design,
              duration: float) -> np.ndarray:
     """Return the camber (n,) in a_ref of the law on the model disturbed as in Fig. 5."""
-    plant = dataclasses.replace(reduced, disturbance=-LOAD * reduced.operating_outputs,
-                                disturbance_frequency=FREQUENCY)
-    loop = closed_loop(plant, plant.rest(), controller(settings, identity, model),
+    plant = Reduced(model, disturbance=-LOAD * model.operating_outputs,
+                    disturbance_frequency=FREQUENCY)
+    loop = closed_loop(plant, plant.rest(), controller(settings, identity, design),
                        round(duration / plant.dt))
-    row = reduced.output_names.index(settings.reference.output)
-    passive = reduced.operating_outputs[row]
+    passive = model.operating_outputs[model.output_names.index(settings.reference.output)]
     return np.array([getattr(outputs, settings.reference.output) for _, outputs in loop]) / passive
 
 

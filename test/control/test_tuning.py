@@ -57,8 +57,8 @@ def test_step_error_is_the_loop_on_the_plant():
     for _ in range(200):
         error = 1.0 - model.c @ x
         by_hand.append(error)
-        w = compensator.c @ z + compensator.d * error
-        x, z = model.a @ x + model.b * w, compensator.a @ z + compensator.b * error
+        w = compensator.c[0] @ z + compensator.d[0, 0] * error
+        x, z = model.a @ x + model.b * w, compensator.a @ z + compensator.b[:, 0] * error
     np.testing.assert_allclose(step_error(model, compensator)[:200], by_hand, atol=1.0e-10)
 
 
@@ -81,7 +81,7 @@ def test_pi_limit_is_where_the_loop_turns_unstable():
 
 def test_linear_loop_predicts_the_amplitude_on_the_model():
     chosen, model = settings(), design_model()
-    camber = verification.on_model(chosen, identity(), reduced_model(), model, 0.3)
+    camber = verification.on_model(chosen, identity(), reduced_model().model, model, 0.3)
     expected = LOAD * abs(judge(chosen, identity(), model, model).sensitivity)
     assert 0.5 * np.ptp(camber[-1000:]) == pytest.approx(expected, rel=0.02)
     found = verification.difference(camber, camber, 1.0e-4)

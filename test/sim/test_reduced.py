@@ -10,6 +10,7 @@ from reduced_wing import CAMBER, first_mode
 
 from dewing_sim import reduced
 from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.model import Model
 from dewing_sim.parameters import config_file
 from dewing_sim.plant import rollout
 from dewing_sim.reduced import Reduced
@@ -17,8 +18,9 @@ from dewing_sim.reduced import Reduced
 
 def fibonacci() -> Reduced:
     """Return the system whose pulse response is 1, 1, 2, 3, 5, 8, ..."""
-    return Reduced(np.array([[0.0, 1.0], [1.0, 1.0]]), np.array([1.0, 1.0]),
-                   np.array([[1.0, 0.0]]), 0.5, 0.0, np.zeros(1), ('cl',), 1.0, 1.0)
+    return Reduced(Model(
+        np.array([[0.0, 1.0], [1.0, 1.0]]), np.ones((2, 1)), np.array([[1.0, 0.0]]),
+        np.zeros((1, 1)), 0.5, ('cl',), np.zeros(1), 1.0, v_squared_max=1.0))
 
 
 def test_pulse_response_has_the_markov_parameters():
@@ -53,10 +55,11 @@ def test_output_disturbance_follows_one_minus_cosine():
 
 
 def test_models_and_states_survive_a_file(tmp_path):
-    plant = dataclasses.replace(first_mode(disturbance=0.05), extra={'fit': np.array(97.0)})
+    plant = first_mode(disturbance=0.05)
     reduced.save(tmp_path / 'model.npz', plant)
     again = reduced.load(tmp_path / 'model.npz')
-    assert again.extra['fit'] == 97.0 and again.output_names == plant.output_names
+    assert again.model.output_names == plant.model.output_names
+    assert np.array_equal(again.disturbance, plant.disturbance)
     state = plant.step(plant.rest(), 1.0e5)
     plant.save(tmp_path / 'state.npz', state)
     one, other = plant.step(state, 2.0e5), again.step(again.load(tmp_path / 'state.npz'), 2.0e5)
@@ -64,9 +67,9 @@ def test_models_and_states_survive_a_file(tmp_path):
 
 
 def test_limits_follow_from_the_case_in_the_file(tmp_path):
-    plant = fibonacci()
-    np.savez(tmp_path / 'model.npz', A=plant.A, B=plant.B[:, None], C=plant.C, D=np.zeros((1, 1)),
-             dt=plant.dt, operating_v_squared=0.0, operating_outputs=np.zeros(1),
+    model = fibonacci().model
+    np.savez(tmp_path / 'model.npz', A=model.a, B=model.b, C=model.c, D=model.d, dt=model.dt,
+             operating_v_squared=0.0, operating_outputs=np.zeros(1),
              output_names=np.array(['cl']), case_yaml=config_file('paper').read_text())
     again = reduced.load(tmp_path / 'model.npz')
     assert again.v_squared_max == 1250.0**2
@@ -74,7 +77,9 @@ def test_limits_follow_from_the_case_in_the_file(tmp_path):
 
 
 def test_divergence_returns_the_last_good_state():
-    plant = dataclasses.replace(fibonacci(), A=np.array([[0.0, 1.0], [1.0e300, 1.0e300]]))
+    plant = fibonacci()
+    plant = dataclasses.replace(plant, model=dataclasses.replace(
+        plant.model, a=np.array([[0.0, 1.0], [1.0e300, 1.0e300]])))
     state = plant.step(plant.step(reduced.State(0, np.zeros(2), 0.0), 1.0), 0.0)
     with pytest.raises(Diverged, match='not finite after step 3') as caught:
         plant.step(state, 0.0)
@@ -82,24 +87,46 @@ def test_divergence_returns_the_last_good_state():
 
 
 @pytest.mark.parametrize('change, message', [
-    (dict(B=np.ones(3)), r'A must be finite and of shape \(3, 3\)'),
-    (dict(C=np.full((1, 2), np.nan)), 'C must be finite'),
     (dict(output_names=('lift',)), "'lift' is not an output"),
-    (dict(dt=0.0), 'dt = 0.0 is not positive'),
+    (dict(d=np.ones((1, 1))), 'D is not zero'),
 ])
-def test_bad_models_are_refused(change, message):
+def test_models_that_are_no_plants_are_refused(change, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    model = dataclasses.replace(fibonacci().model, **change)
     with pytest.raises(BadInput, match=message):
-        dataclasses.replace(fibonacci(), **change)
+        Reduced(model)
+    model.save('model.npz')
+    with pytest.raises(BadInput, match=f'model.npz: reduced model: .*{message}'):
+        reduced.load('model.npz')
+
+
+def test_a_disturbance_of_another_shape_is_refused():
+    with pytest.raises(BadInput, match=r'disturbance must be finite and of shape \(1,\)'):
+        Reduced(fibonacci().model, disturbance=np.ones(2))
+
+
+def test_a_plant_is_not_written_over_another_without_permission(tmp_path):
+    reduced.save(tmp_path / 'model.npz', fibonacci())
+    with pytest.raises(BadInput, match='exists'):
+        reduced.save(tmp_path / 'model.npz', first_mode())
+    reduced.save(tmp_path / 'model.npz', first_mode(), overwrite=True)
+    assert reduced.load(tmp_path / 'model.npz').model.output_names[0] == 'camber_mean'
+
+
+def test_rest_is_the_operating_point_unless_said_otherwise(tmp_path):
+    model = dataclasses.replace(first_mode().model, operating_v_squared=1.0e5)
+    assert not np.any(Reduced(model).rest().x)
+    plant = Reduced(model, rest_v_squared=2.0e5)
+    reduced.save(tmp_path / 'model.npz', plant)
+    assert np.array_equal(reduced.load(tmp_path / 'model.npz').rest().x, plant.trim(2.0e5).x)
 
 
 def test_bad_files_are_refused(tmp_path):
-    for content, message in ((dict(D=np.ones(1)), 'D is not zero'),
-                             (dict(A=np.eye(2)), 'not a reduced model, B, C')):
-        np.savez(tmp_path / 'bad.npz', **content)
-        with pytest.raises(BadInput, match=message):
-            reduced.load(tmp_path / 'bad.npz')
+    np.savez(tmp_path / 'bad.npz', A=np.eye(2))
+    with pytest.raises(BadInput, match='not a linear model'):
+        reduced.load(tmp_path / 'bad.npz')
     (tmp_path / 'text.npz').write_text('no archive')
-    with pytest.raises(BadInput, match='cannot be read as npz'):
+    with pytest.raises(BadInput, match='not a linear model'):
         reduced.load(tmp_path / 'text.npz')
-    with pytest.raises(BadInput, match='No such file'):
+    with pytest.raises(BadInput, match='no such file'):
         reduced.load(tmp_path / 'absent.npz')

@@ -11,6 +11,7 @@ from scipy import linalg
 from dewing_control.model.design import Design
 from dewing_sim import parameters
 from dewing_sim.identity import Identity
+from dewing_sim.model import Model
 from dewing_sim.reduced import Reduced
 
 CAMBER = 1.8e-5                         # m, passive mean camber
@@ -32,15 +33,17 @@ def reduced_model(dt=1.0e-4, disturbance=0.0, frequency=10.0, stretch=1.0) -> Re
     a, b = steps[:6, :6], steps[:6, 6]
     camber = np.array([1.0, 0.0, 1.0, 0.0, 1.0, 0.0])
     c = np.vstack([CAMBER * camber, 1.5 * CAMBER * camber, 0.3 * camber])
-    return Reduced(a, b / SLACK, c, dt, 0.0, np.array([CAMBER, 1.5 * CAMBER, 0.395]),
-                   ('camber_mean', 'camber_max', 'cl'), SLACK, 1250.0**2,
+    model = Model(a, b[:, None] / SLACK, c, np.zeros((3, 1)), dt,
+                  ('camber_mean', 'camber_max', 'cl'),
+                  np.array([CAMBER, 1.5 * CAMBER, 0.395]), SLACK, v_squared_max=1250.0**2)
+    return Reduced(model,
                    disturbance=-disturbance * np.array([CAMBER, 1.5 * CAMBER, 0.0]),
                    disturbance_frequency=frequency)
 
 
 def design_model(steps=1) -> Design:
     """Return the normalised model of mean camber."""
-    return Design.of(reduced_model(), 'camber_mean', steps)
+    return Design.of(reduced_model().model, 'camber_mean', steps)
 
 
 def identity() -> Identity:

@@ -19,4 +19,4 @@ def mode(frequency=72.0, damping=0.02, gain=1.0, dt=2.0e-6) -> Design:
     omega = 2.0 * np.pi * frequency
     step = linalg.expm(dt * np.array([[0.0, 1.0, 0.0], [-omega**2, -2.0 * damping * omega,
                                                         omega**2], [0.0, 0.0, 0.0]]))
-    return Design(step[:2, :2], step[:2, 2], np.array([gain, 0.0]), dt, 0.0)
+    return Design.normalised(step[:2, :2], step[:2, 2], np.array([gain, 0.0]), dt, 0.0)

@@ -5,6 +5,7 @@
 import numpy as np
 from scipy import signal
 
+from dewing_sim.model import Model
 from dewing_sim.reduced import Reduced
 
 SLACK = 1300.0**2           # V_L^2 of the case `paper`
@@ -21,8 +22,9 @@ def first_mode(dt=1.0e-4, frequency=72.0, damping=0.08, disturbance=0.0) -> Redu
     A = np.array([[0.0, 1.0], [-omega**2, -2.0 * damping * omega]])
     B = np.array([[0.0], [gain * omega**2]])
     C = np.array([[CAMBER, 0.0], [1.55 * CAMBER, 0.0], [5.4e-9 / gain, 0.0]])
-    A, B, C, _, _ = signal.cont2discrete((A, B, C, np.zeros((3, 1))), dt)
-    return Reduced(A, B[:, 0], C, dt, 0.0, np.array([CAMBER, 1.55 * CAMBER, 0.3948]),
-                   ('camber_mean', 'camber_max', 'cl'), SLACK, 1250.0**2,
+    A, B, C, D, _ = signal.cont2discrete((A, B, C, np.zeros((3, 1))), dt)
+    model = Model(A, B, C, D, dt, ('camber_mean', 'camber_max', 'cl'),
+                  np.array([CAMBER, 1.55 * CAMBER, 0.3948]), SLACK, v_squared_max=1250.0**2)
+    return Reduced(model,
                    disturbance=-disturbance * np.array([CAMBER, 1.55 * CAMBER, 0.0]),
                    disturbance_frequency=10.0)

@@ -7,6 +7,7 @@ import pytest
 from scipy import linalg
 
 from dewing_sim.errors import BadInput
+from dewing_sim.state_space import Matrices
 from dewing_sysid import era
 
 GOLDEN = (1.0 + np.sqrt(5.0)) / 2.0
@@ -171,7 +172,7 @@ def test_okid_withstands_noise():
 
 def test_unstable_poles_are_mirrored_and_reported():
     poles = np.array([1.05, 0.9, 0.0])
-    model = era.Realisation(np.diag(poles), np.ones((3, 1)), np.ones((1, 3)), np.zeros((1, 1)))
+    model = Matrices(np.diag(poles), np.ones((3, 1)), np.ones((1, 3)), np.zeros((1, 1)))
     mirrored, originals = era.reflect_unstable(model)
     assert originals == pytest.approx([1.05])
     assert np.sort(np.linalg.eigvals(mirrored.a)) == pytest.approx([0.0, 0.9, 1.0 / 1.05])

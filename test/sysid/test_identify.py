@@ -12,9 +12,9 @@ from synthetic_plant import DAMPING, FREQUENCIES, SyntheticPlant
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.model import Model
 from dewing_sysid import experiment, figures, plan
-from dewing_sysid.identify import concerns, identify, identify_plant, judge, report
-from dewing_sysid.model import Model, nrmse_fit
+from dewing_sysid.identify import concerns, identify, identify_plant, judge, nrmse_fit, report
 from dewing_sysid.settings import Settings
 
 CASE = parameters.load('paper')
@@ -198,9 +198,9 @@ def test_model_file_runs_as_a_plant(pulsed, tmp_path):
 
 def test_model_file_that_is_none_is_refused(tmp_path):
     (tmp_path / 'x.npz').write_text('no archive')
-    with pytest.raises(BadInput, match='not a model'):
+    with pytest.raises(BadInput, match='not a linear model'):
         Model.load(tmp_path / 'x.npz')
-    with pytest.raises(BadInput, match='no such'):
+    with pytest.raises(BadInput, match='no such file'):
         Model.load(tmp_path / 'y.npz')
 
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The identification node in lock-step with a simulator, against the offline identification."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
@@ -13,16 +15,16 @@ from std_srvs.srv import Trigger
 from synthetic_plant import SyntheticPlant
 from trajectory_msgs.msg import JointTrajectory
 
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.build import build_reduced
 from dewing_sim.errors import BadInput
+from dewing_sim.model import Model
 from dewing_sim.ros import harness, qos
 from dewing_sim.ros.node import SimulatorNode
 from dewing_sim.ros.recorder import RecorderNode
 from dewing_sysid import messages, sources
 from dewing_sysid.experiment import load_records
 from dewing_sysid.identify import identify, identify_plant
-from dewing_sysid.model import Model
 from dewing_sysid.node import SysidNode
 from dewing_sysid.settings import Settings
 
@@ -37,10 +39,10 @@ def model(tmp_path):
     a, b, c = plant.matrices
     outputs = plant.observe(plant.rest())
     names = ('camber_mean', 'camber_max', 'cl')
-    reduced.save(tmp_path / 'plant.npz', reduced.Reduced(
-        a, b[:, 0], c, plant.dt, 0.0, np.array([getattr(outputs, name) for name in names]), names,
-        plant.v_squared_slack, 1250.0**2,
-        extra={'case_yaml': parameters.to_yaml(parameters.load('paper'))}))
+    Model(a, b, c, np.zeros((3, 1)), plant.dt, names,
+          np.array([getattr(outputs, name) for name in names]), plant.v_squared_slack,
+          v_squared_max=1250.0**2, case_yaml=parameters.to_yaml(parameters.load('paper')),
+          ).save(tmp_path / 'plant.npz')
     return str(tmp_path / 'plant.npz')
 
 
@@ -194,9 +196,7 @@ def test_an_existing_model_is_not_written_over(session, model, tmp_path):
 
 
 def test_a_plant_that_does_not_know_its_case_is_refused(session, model, tmp_path):
-    plant = reduced.load(model)
-    plant.extra.clear()
-    reduced.save(model, plant)
+    dataclasses.replace(Model.load(model), case_yaml='').save(model, overwrite=True)
     _, node = start(session, model, tmp_path)
     session.spin_until(lambda: node.exit_status is not None, PATIENCE)
     assert 'does not say which case it is' in node.reason

@@ -5,7 +5,7 @@
 import numpy as np
 
 from dewing_cli.paper import drawing, experiments
-from dewing_cli.paper.designed import design_of, reduced_of
+from dewing_cli.paper.designed import design_of, model_of
 from dewing_cli.paper.plan import Plan
 from dewing_cli.paper.section import Figure, Found, Row, Section, Table
 from dewing_control.settings import ControllerSettings
@@ -87,7 +87,7 @@ def _predicted(plan: Plan, found: Found) -> np.ndarray:
     result = found['design']
     run = plan.runs['fig5/pid_tuned']
     settings = parameters.from_yaml(run.settings, ControllerSettings)
-    return on_model(settings, experiments.identity(found['experiments']), reduced_of(result),
+    return on_model(settings, experiments.identity(found['experiments']), model_of(result),
                     design_of(result), run.duration)
 
 

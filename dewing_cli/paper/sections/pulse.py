@@ -10,8 +10,8 @@ from dewing_cli.paper.quantities import FIRST_MODE
 from dewing_cli.paper.section import Figure, Found, Row, Section, Table
 from dewing_control.model.identified import CHANGES
 from dewing_sim import parameters
-from dewing_sysid.identify import factorise, realise
-from dewing_sysid.model import Model, nrmse_fit
+from dewing_sim.model import Model
+from dewing_sysid.identify import factorise, nrmse_fit, realise
 from dewing_sysid.plan import EXPERIMENT, FRESH, samples, time_scale
 from dewing_sysid.settings import Settings
 
@@ -56,9 +56,10 @@ def _models(records: dict, identity, length: float) -> dict[int, Model]:
     models = {}
     for order in ORDERS:
         made = realise(factors, settings.realisation, order)
-        models[order] = Model(made.a, made.b, made.c, np.zeros_like(made.d), record.dt, 0.0,
-                              record.baseline.mean(axis=1), record.names, ('m', '-'), 1.0, 1.0,
-                              factors.singular_values)
+        models[order] = Model(
+            made.a, made.b, made.c, np.zeros_like(made.d), record.dt, record.names,
+            record.baseline.mean(axis=1), 1.0, v_squared_max=1.0, units=('m', '-'),
+            singular_values=factors.singular_values)
     return models
 
 

@@ -108,7 +108,7 @@ def test_signals_end_every_process_cleanly(tmp_path, number):
     ('simulator', {'flow.speed': 1}, 'flow.speed = 1 is not a floating-point number'),
     ('simulator', {'run.duration': -1.0}, 'run.duration = -1.0 is out of range'),
     ('simulator', {'case': 'papre'}, "'papre' is not a shipped configuration"),
-    ('simulator', {'run.plant': 'reduced', 'model': 'none.npz'}, 'none.npz: cannot be read'),
+    ('simulator', {'run.plant': 'reduced', 'model': 'none.npz'}, 'none.npz: no such file'),
     ('simulator', {'actuation.voltage_limit': 2000.0}, 'the membrane loses its tension at 13'),
     ('controller', {'pid.kp': -1.0}, 'pid.kp = -1.0 is out of range'),
     ('recorder', {'output': '.'}, '. is a folder, not a file'),
@@ -123,8 +123,10 @@ def test_bad_parameters_end_with_status_2_and_one_sentence(tmp_path, name, setti
 def test_a_diverging_run_ends_with_its_last_good_state_and_no_nan(tmp_path):
     with graph(tmp_path) as ros:
         plant = first_mode()
-        reduced.save(ros.model, dataclasses.replace(
-            plant, A=1.5 * plant.A, operating_v_squared=1.0e5))
+        growing = dataclasses.replace(plant.model, a=1.5 * plant.model.a,
+                                      operating_v_squared=1.0e5)
+        reduced.save(ros.model, dataclasses.replace(plant, model=growing, rest_v_squared=0.0),
+                     overwrite=True)
         path = ros.recorder()
         simulator = ros.simulator(subscribers=1, mode='free')
         assert simulator.wait(PATIENCE) == 1
