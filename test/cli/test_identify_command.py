@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dewing_sysid.model import Model
 from synthetic_plant import SyntheticPlant
 
 from dewing_cli import main as cli
 from dewing_sim import parameters, reduced
 from dewing_sim.identity import Identity
+from dewing_sim.model import Model
 from dewing_sysid import experiment, plan
 from dewing_sysid.settings import Settings
 
