@@ -5,6 +5,7 @@
 import argparse
 import re
 import runpy
+import sys
 from xml.etree import ElementTree
 
 import documented_commands as documented
@@ -63,10 +64,15 @@ def test_nothing_is_listed_that_no_page_shows():
 def test_the_commands_and_the_python_of_a_page_run(page, tmp_path, monkeypatch, cluster):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'cache'))
+    monkeypatch.setattr(sys, 'path', [*sys.path])
     record(tmp_path / 'run.mcap')
     names = {'__name__': name(page)}
     for block in blocks(page):
         if block.language == 'python':
+            file = re.fullmatch(r'# (\w+\.py)', block.lines[0])
+            if file:                    # the block is this file, which later ones use
+                (tmp_path / file[1]).write_text(block.text)
+                sys.modules.pop(file[1].removesuffix('.py'), None)
             exec(compile(block.text, name(page), 'exec'), names)
         elif block.where == 'test':
             for line in block.lines:
