@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_control.law.base import Law
-from dewing_control.model.loop import Compensator
 from dewing_sim.parameters import count, real
+from dewing_sim.state_space import Matrices
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,5 @@ class Integrator(Law):
         return (v_squared, errors[:-1]), v_squared
 
     def compensator(self):
-        one = np.ones(1)
-        return Compensator(np.eye(1), self.step_gain * one, one, self.step_gain)
+        return Matrices.siso(np.eye(1), [self.step_gain], [1.0], self.step_gain)
 '''
