@@ -17,6 +17,7 @@ import yaml
 
 from dewing_sim.errors import BadInput
 from dewing_sim.schema import (
+    Numbers,
     Section,
     check,
     choice,
@@ -25,6 +26,7 @@ from dewing_sim.schema import (
     fields,
     from_mapping,
     leaves,
+    numbers,
     real,
     replace,
     text,
@@ -34,7 +36,8 @@ from dewing_sim.schema import (
 __all__ = [
     'Actuation', 'Case', 'Disturbance', 'Flow', 'Gust', 'Membrane', 'Numerics', 'RigidMotion',
     'check', 'choice', 'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml',
-    'leaves', 'load', 'parse_assignment', 'real', 'replace', 'text', 'to_mapping', 'to_yaml',
+    'leaves', 'load', 'numbers', 'parse_assignment', 'real', 'replace', 'text', 'to_mapping',
+    'to_yaml',
 ]
 
 
@@ -69,6 +72,9 @@ class Membrane:
     density: float = real('kg/m^3', 'elastomer density', 10.0, 1.0e4)
     shear_modulus: float = real('Pa', 'Gent shear modulus mu', 1.0e2, 1.0e8)
     gent_limit: float = real('-', 'Gent limit Jm of I1 - 3', 1.0, 1.0e6)
+    law: str = choice('law of elasticity; shear_modulus and gent_limit are those of gent',
+                      'gent', 'ogden', 'mooney_rivlin', open=True, default='gent')
+    constants: Numbers = numbers('constants of another law than gent, by name')
     bulk_modulus: float = real('Pa', 'K of the volumetric energy K (J-1)^2', 1.0e4, 1.0e12)
     relative_permittivity: float = real('-', 'eps_r of the elastomer', 1.0, 1.0e3)
     element: str = choice('two-node membrane, or solid elements through the thickness',
@@ -231,8 +237,14 @@ def from_yaml(text: str, schema: type[Section] = Case, origin: str = 'YAML') -> 
 
 def to_yaml(section: Any) -> str:
     """Return the ROS-format YAML from which `from_yaml` rebuilds ``section``."""
-    tree = {'/**': {'ros__parameters': to_mapping(section)}}
+    tree = {'/**': {'ros__parameters': _without_empty(to_mapping(section))}}
     return yaml.safe_dump(tree, sort_keys=False)
+
+
+def _without_empty(tree: dict) -> dict:
+    """Return nested mappings less the empty ones, which ROS cannot read."""
+    return {key: _without_empty(value) if isinstance(value, dict) else value
+            for key, value in tree.items() if value != {}}
 
 
 class _StrictLoader(yaml.SafeLoader):

@@ -7,12 +7,14 @@ range, and otherwise raises `BadInput` naming field, value, unit and range.
 """
 
 import dataclasses
-from typing import Any, Iterator, Mapping, TypeVar
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeVar
 
 from dewing_sim.errors import BadInput
 from dewing_sim.plugins import is_plugin
 
 Section = TypeVar('Section')
+HUGE = 1.0e15       # bounds of a number whose own are not known here
 
 
 def real(unit: str, meaning: str, low: float, high: float, **more: Any) -> Any:
@@ -42,6 +44,37 @@ def text(meaning: str, **more: Any) -> Any:
     return _field(str, '', meaning, **more)
 
 
+class Numbers(Mapping):
+    """Named numbers, immutable and comparable: what an open section holds."""
+
+    def __init__(self, values: Mapping[str, float]):
+        """Keep the values in the order of their names."""
+        self._values = dict(sorted(values.items()))
+
+    def __getitem__(self, name: str) -> float:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._values.items()))
+
+    def __repr__(self) -> str:
+        return f'Numbers({self._values})'
+
+
+def numbers(meaning: str) -> Any:
+    """Declare an open section of named floating-point numbers, empty by default.
+
+    Whoever uses it knows the names and checks them with a schema of his own.
+    """
+    return _field(Numbers, '', meaning, default=Numbers({}))
+
+
 def _field(kind: type, unit: str, meaning: str, **more: Any) -> Any:
     return dataclasses.field(metadata=dict(type=kind, unit=unit, meaning=meaning, **more))
 
@@ -56,12 +89,21 @@ def fields(schema: type, prefix: str = '') -> Iterator[tuple[str, dataclasses.Fi
 
 
 def leaves(section: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:
-    """Yield (dotted name, value, field) of every leaf of an instance."""
+    """Yield (dotted name, value, field) of every leaf of an instance, each number by itself."""
     for name, field in fields(type(section)):
         value = section
         for key in name.split('.'):
             value = getattr(value, key)
-        yield name, value, field
+        if isinstance(value, Numbers):
+            for key, number in value.items():
+                yield f'{name}.{key}', number, _number(field)
+        else:
+            yield name, value, field
+
+
+def _number(field: dataclasses.Field) -> dataclasses.Field:
+    """Return the declaration of a number in the open section ``field``."""
+    return real('', field.metadata['meaning'], -HUGE, HUGE)
 
 
 def describe(field: dataclasses.Field) -> str:
@@ -79,6 +121,8 @@ def describe(field: dataclasses.Field) -> str:
 def check(name: str, field: dataclasses.Field, value: Any) -> Any:
     """Return ``value`` if ``field`` admits it; raise `BadInput` otherwise."""
     wanted = field.metadata['type']
+    if wanted is Numbers:
+        return _checked_numbers(name, field, value)
     if type(value) is not wanted:
         hint = _FLOAT_HINT if wanted is float else ''
         raise BadInput(f'{name} = {value!r} is not a {_TYPE_NAMES[wanted]}{hint}: '
@@ -93,6 +137,16 @@ def check(name: str, field: dataclasses.Field, value: Any) -> Any:
     if not admissible:
         raise BadInput(f'{name} = {value!r} is out of range: {describe(field)}')
     return value
+
+
+def _checked_numbers(name: str, field: dataclasses.Field, value: Any) -> Numbers:
+    if not isinstance(value, Mapping):
+        raise BadInput(f'{name}: expected names and numbers, got {value!r}: {describe(field)}')
+    for key, number in value.items():
+        if not isinstance(key, str) or not key.isidentifier():
+            raise BadInput(f'{name}.{key} is not a name: letters, digits and _')
+        check(f'{name}.{key}', _number(field), number)
+    return Numbers(value)
 
 
 _TYPE_NAMES = {float: 'floating-point number', int: 'whole number', str: 'word'}
@@ -148,7 +202,14 @@ def _missing_hint(field: dataclasses.Field) -> str:
 
 def to_mapping(section: Any) -> dict:
     """Return the nested mapping from which `from_mapping` rebuilds ``section``."""
-    return dataclasses.asdict(section)
+    return {field.name: _plain(getattr(section, field.name))
+            for field in dataclasses.fields(section)}
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return to_mapping(value)
+    return dict(value) if isinstance(value, Numbers) else value
 
 
 def replace(section: Section, changes: Mapping[str, Any]) -> Section:

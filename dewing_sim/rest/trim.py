@@ -25,6 +25,7 @@ from dewing_sim.scales import Scales
 from dewing_sim.state import State
 from dewing_sim.structure.dynamics.motion import Motion
 from dewing_sim.structure.dynamics.step import Operator, Structure
+from dewing_sim.structure.material import registry
 
 QUASI_STEADY = 10.0                 # c/U
 PROGRESS_STEPS = 50                 # between calls of `progress`
@@ -98,5 +99,6 @@ def fingerprint(wing: Wing) -> str:
     case = to_mapping(wing.case)
     del case['disturbance'], case['gust'], case['rigid_motion'], case['actuation']['voltage_limit']
     digest = hashlib.sha256(yaml.safe_dump(case).encode())
-    digest.update(machine.fingerprint(type(wing).__module__).encode())
+    sources = (type(wing).__module__, *registry.sources_of(wing.case.membrane.law))
+    digest.update(machine.fingerprint(*sources).encode())
     return digest.hexdigest()[:24]

@@ -4,7 +4,7 @@
 
 With the field along l_3 the derivatives of W with respect to e_i = log l_i are the Kirchhoff
 stresses tau_i = J sigma_i, which contain the Maxwell stress: +eps E^2/2 along the field and
--eps E^2/2 across. They follow from `material` with I1 = sum l_i^2, J = l_1 l_2 l_3 and
+-eps E^2/2 across. They follow from `material.elastomer` with I1 = sum l_i^2, J = l_1 l_2 l_3 and
 Y = l_1 l_2 V / H.
 """
 
@@ -18,15 +18,8 @@ from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.machine.kernels import kernel
 from dewing_sim.scales import Scales
-from dewing_sim.structure.material.elastomer import (
-    VACUUM_PERMITTIVITY,
-    Elastomer,
-    deviatoric_stress,
-    energy,
-    modulus,
-    slopes,
-    stress,
-)
+from dewing_sim.structure.material import law, registry
+from dewing_sim.structure.material.elastomer import Elastomer, energy, modulus, slopes, stress
 from dewing_sim.structure.material.viscosity import Overstress
 
 SI = Scales(length=1.0, speed=1.0, density=1.0, viscosity=1.0)
@@ -34,13 +27,16 @@ NO_OVERSTRESS = Overstress(0.0, np.zeros((2, 0)))
 
 
 @kernel
-def kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps):
-    """Return tau_1, tau_3, the moduli d tau_i / d e_k for ik = 11, 13, 33, and 2 dW/dI1."""
+def kirchhoff(l1, l2, l3, field_squared, k):
+    """Return tau_1, tau_3, the moduli d tau_i / d e_k for ik = 11, 13, 33, and 2 dW/dI1.
+
+    ``k`` are the `Elastomer.constants`, here as in the other kernels.
+    """
     j = l1 * l2 * l3
     b1, b3 = l1 * l1, l3 * l3
     i1 = b1 + l2 * l2 + b3
     y = (l1 * l2) ** 2 * field_squared
-    s = slopes(i1, j, y, mu, jm, bulk, eps)
+    s = slopes(i1, j, y, l2, k)
     # By logarithms: dJ = J, d(I1)/2 = l_i^2, d(Y^2)/2 = Y^2 for i = 1 and 0 for i = 3.
     return (stress(s, b1, j, y), stress(s, b3, j, 0.0),
             modulus(s, b1, j, y, b1, j, y, 2.0 * b1, j, 2.0 * y),
@@ -54,7 +50,7 @@ NEARLY_BALANCED = 1.0e-8    # logarithm of the thickness stretch
 
 
 @kernel
-def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, mu, jm, bulk, eps):
+def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, k):
     """Solve tau_3 = 0 for l_3; return tau_1, d tau_1/d e_1, d tau_1/d field_squared, l_3, status.
 
     ``extra1`` and ``extra3`` are second Piola-Kirchhoff stresses on top, held fixed. Newton from
@@ -62,23 +58,23 @@ def _balance_thickness(l1, l2, l3, field_squared, extra1, extra3, mu, jm, bulk, 
     square; the bulk modulus has no part in that, for it cancels from tau_1 - tau_3.
     """
     for _ in range(60):
-        t1, t3, c11, c13, c33, softness = kirchhoff(l1, l2, l3, field_squared, mu, jm, bulk, eps)
+        t1, t3, c11, c13, c33, softness = kirchhoff(l1, l2, l3, field_squared, k)
         t1, c11 = t1 + extra1 * l1 * l1, c11 + 2.0 * extra1 * l1 * l1
         t3, c33 = t3 + extra3 * l3 * l3, c33 + 2.0 * extra3 * l3 * l3
-        if not 0.0 < softness < math.inf:       # as long as I1bar - 3 < jm
+        if not 0.0 < softness < math.inf:       # the law locks up or fails
             return t1, c11, 0.0, l3, _LOCKED
         if not c33 > 0.0:
             return t1, c11, 0.0, l3, _PULLED_IN
         change, ratio = -t3 / c33, c13 / c33
         if abs(change) < NEARLY_BALANCED:
-            slope = -0.5 * eps * l1 * l2 / l3 * (1.0 + ratio)
+            slope = -0.5 * k.eps * l1 * l2 / l3 * (1.0 + ratio)
             return (t1 + c13 * change, c11 - c13 * ratio, slope, l3 * (1.0 + change), BALANCED)
         l3 *= math.exp(min(max(change, -0.5), 0.5))
     return t1, c11, 0.0, l3, _PULLED_IN
 
 
 @kernel
-def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
+def respond(stretch, lateral, thickness, v_squared, extra, constants):
     """Fill rows tension, its slopes in stretch and V^2, thickness; return status and element.
 
     ``extra`` (2, n) are stresses on top, see `_balance_thickness`, or (2, 0) without.
@@ -93,7 +89,7 @@ def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
         if extra.shape[1] > 0:
             extra1, extra3 = extra[0, k], extra[1, k]
         tau, modulus, slope, l3, status = _balance_thickness(
-            l1, lateral, volume * per_area, field_squared, extra1, extra3, mu, jm, bulk, eps)
+            l1, lateral, volume * per_area, field_squared, extra1, extra3, constants)
         if status != BALANCED:
             return response, status, k
         volume = l1 * lateral * l3
@@ -103,6 +99,26 @@ def respond(stretch, lateral, thickness, v_squared, extra, mu, jm, bulk, eps):
         response[2, k] = per_area * slope / thickness
         response[3, k] = thickness * l3
     return response, BALANCED, -1
+
+
+@kernel
+def _deviatoric_stresses(along, through, lateral, constants):
+    """Return S_11 and S_33 (2, n) of squared stretches (n,)."""
+    stresses = np.empty((2, along.size))
+    for i in range(along.size):
+        stresses[0, i], stresses[1, i], _ = law.deviatoric(
+            along[i], through[i], 0.0, lateral, constants)
+    return stresses
+
+
+@kernel
+def _energies(i1, j, y_squared, lateral, constants):
+    """Return elastic and electrostatic energies (n,)."""
+    elastic, electric = np.empty(j.size), np.empty(j.size)
+    for i in range(j.size):
+        elastic[i] = energy(i1[i], j[i], 0.0, lateral, constants)
+        electric[i] = elastic[i] - energy(i1[i], j[i], y_squared[i], lateral, constants)
+    return elastic, electric
 
 
 class Response(NamedTuple):
@@ -128,23 +144,15 @@ class Sheet:
 
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Sheet':
-        """Return the sheet of a parameter section in the units of ``scales``.
-
-        Voltages stay in volt: the permittivity is taken in units of pressure length^2 / V^2.
-        """
-        elastomer = Elastomer(
-            section.shear_modulus / scales.pressure, section.gent_limit,
-            section.bulk_modulus / scales.pressure,
-            VACUUM_PERMITTIVITY * section.relative_permittivity
-            / (scales.pressure * scales.length ** 2))
-        return cls(elastomer, section.initial_thickness / scales.length,
+        """Return the sheet of a parameter section in the units of ``scales``, see `registry`."""
+        return cls(registry.elastomer_of(section, scales), section.initial_thickness / scales.length,
                    section.prestretch_lateral)
 
     def respond(self, stretch, v_squared: float, overstress: Overstress | None = None,
                 ) -> Response:
         """Return tension, slopes and thickness at total stretches (n,) and the given V^2.
 
-        Raises `BadInput` for a negative or non-finite V^2, `Diverged` beyond the Gent limit or
+        Raises `BadInput` for a negative or non-finite V^2, `Diverged` where the law locks up or
         where the field squeezes the thickness to nothing.
         """
         stretch = np.asarray(stretch, dtype=float)
@@ -162,20 +170,19 @@ class Sheet:
         if not 0.0 <= v_squared < math.inf:
             raise BadInput(f'v_squared = {v_squared} V^2 is out of range: from 0 to infinity')
         gain, held = overstress or NO_OVERSTRESS
-        mu, *others = self.elastomer.constants
         return (self.lateral_stretch, self.initial_thickness, float(v_squared), held,
-                (1.0 + gain) * mu, *others)
+                self.elastomer.stiffened(gain))
 
     def deviatoric_stress(self, stretch, thickness) -> np.ndarray:
-        """Return the deviatoric second Piola-Kirchhoff stress of the Gent energy, (2, n).
+        """Return the deviatoric second Piola-Kirchhoff stress of the law, (2, n).
 
         The components are those along the stretch and through ``thickness`` (n,).
         """
-        through = np.square(thickness / self.initial_thickness)
-        along, across, _ = deviatoric_stress(
-            np.square(stretch), through, 0.0, self.lateral_stretch ** 2,
-            self.elastomer.shear_modulus, self.elastomer.gent_limit)
-        return np.stack([along, across])
+        through, lateral = np.square(thickness / self.initial_thickness), self.lateral_stretch ** 2
+        along, k = np.square(stretch), self.elastomer.constants
+        if self.elastomer.law.TAKES_ARRAYS:
+            return np.stack(law.deviatoric(along, through, 0.0, lateral, k)[:2])
+        return _deviatoric_stresses(along, through, lateral, k)
 
     def energies(self, stretch, v_squared: float) -> tuple[np.ndarray, np.ndarray]:
         """Return elastic and electrostatic energy eps J E^2 / 2 per unstretched volume, (n,)."""
@@ -184,8 +191,11 @@ class Sheet:
         i1 = stretch ** 2 + self.lateral_stretch ** 2 + l3 ** 2
         j = stretch * self.lateral_stretch * l3
         y_squared = (stretch * self.lateral_stretch / self.initial_thickness) ** 2 * v_squared
-        elastic = energy(i1, j, 0.0, *self.elastomer.constants)
-        return elastic, elastic - energy(i1, j, y_squared, *self.elastomer.constants)
+        elastomer, lateral = self.elastomer, self.lateral_stretch
+        if not elastomer.law.TAKES_ARRAYS:
+            return _energies(i1, j, y_squared, lateral, elastomer.constants)
+        elastic = energy(i1, j, 0.0, lateral, elastomer.constants)
+        return elastic, elastic - energy(i1, j, y_squared, lateral, elastomer.constants)
 
     def _describe_failure(self, status: int, element: int, stretch: float, v_squared: float,
                           ) -> str:
@@ -193,8 +203,7 @@ class Sheet:
         if not math.isfinite(stretch):
             return f'{where}: the deformation is not finite; reduce the time step or the load'
         if status == _LOCKED:
-            return (f'{where}: I1bar - 3 reaches the Gent limit '
-                    f'{self.elastomer.gent_limit:.6g}; '
+            return (f'{where}: {self.elastomer.law.limit}; '
                     'reduce the load, the prestretch or the time step')
         return f'{where}: no thickness balances the Maxwell stress; reduce the voltage'
 

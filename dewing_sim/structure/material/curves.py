@@ -34,7 +34,7 @@ class Curves:
     slack_voltage: float
     free_stretch: np.ndarray            # equal biaxial, no load
     free_voltage: np.ndarray
-    pull_in: limits.PullIn | None       # None if the Gent limit comes first
+    pull_in: limits.PullIn | None       # None if the law locks up first
     thickness: float                    # before prestretch, m
     camber_voltage: np.ndarray
     camber: dict[str, np.ndarray]       # structure -> largest static deflection in chords
@@ -67,9 +67,9 @@ def of_section(section: parameters.Membrane, pressure: float, voltage_limit: flo
     elastomer = sheet.elastomer
     slack = float(np.sqrt(sheet.loss_of_tension_v_squared(section.prestretch)))
     voltage = np.linspace(0.0, slack, POINTS)
-    stretch = np.linspace(1.0, 0.95 * _locking(elastomer), POINTS)
-    free = np.geomspace(1.0, 0.999 * limits.locking_stretch(
-        elastomer, lambda s: 2.0 * s * s + s ** -4), POINTS)
+    stretch = np.linspace(1.0, 0.95 * min(_reach(elastomer, limits.equibiaxial),
+                                          _reach(elastomer, limits.plane_strain)), POINTS)
+    free = np.geomspace(1.0, 0.999 * _reach(elastomer, limits.equibiaxial), POINTS)
     camber_voltage = np.linspace(0.0, min(voltage_limit, 0.95 * slack), VOLTAGES)
     return Curves(
         stretch, _stresses(elastomer, stretch), voltage,
@@ -94,9 +94,10 @@ def _pull_in(elastomer: Elastomer) -> limits.PullIn | None:
         return None
 
 
-def _locking(elastomer: Elastomer) -> float:
-    return min(limits.locking_stretch(elastomer, i1) for i1 in (
-        lambda s: 2.0 * s * s + s ** -4, lambda s: s * s + s ** -2 + 1.0))
+def _reach(elastomer: Elastomer, invariants) -> float:
+    """Return the stretch at which the law locks up, or to which it is shown if it never does."""
+    locking = limits.locking_stretch(elastomer.law, invariants)
+    return locking if np.isfinite(locking) else limits.FARTHEST
 
 
 def _stresses(elastomer: Elastomer, stretch: np.ndarray) -> dict[str, np.ndarray]:

@@ -3,8 +3,8 @@
 """How far a dielectric elastomer can go: voltage-stretch curves, pull-in, locking, breakdown.
 
 The curves are followed in the stretch, which passes the voltage's maxima. At a maximum the
-thickness pulls in under constant voltage; the sheet snaps to the branch beyond, if the Gent limit
-makes the voltage rise again (Zhao and Suo, doi 10.1063/1.2768641).
+thickness pulls in under constant voltage; the sheet snaps to the branch beyond, if the law stiffens
+enough to make the voltage rise again (Zhao and Suo, doi 10.1063/1.2768641).
 """
 
 from typing import Callable, NamedTuple
@@ -14,9 +14,11 @@ from scipy.optimize import brentq
 
 from dewing_sim.errors import BadInput
 from dewing_sim.structure.material.elastomer import Elastomer, diagonal
+from dewing_sim.structure.material.law import Law
 
 TRACE = 4000            # points of a voltage-stretch curve
-NEARLY = 1.0 - 1.0e-6   # of the stretch at which the Gent limit locks
+NEARLY = 1.0 - 1.0e-6   # of the stretch at which the law locks up
+FARTHEST = 8.0          # stretch to which a law is followed that never does
 
 
 class PullIn(NamedTuple):
@@ -41,24 +43,41 @@ def equibiaxial_field(elastomer: Elastomer, stretch, load: float = 0.0) -> np.nd
     return np.sqrt(np.where(square >= 0.0, square, np.nan)) * thickness
 
 
-def locking_stretch(elastomer: Elastomer, i1: Callable[[float], float]) -> float:
-    """Return the stretch at which ``i1(stretch)`` = I1bar reaches the Gent limit."""
-    return brentq(lambda stretch: i1(stretch) - 3.0 - elastomer.gent_limit, 1.0, 1.0e6)
+def equibiaxial(stretch: float) -> tuple[float, float]:
+    """Return I1bar and I2bar of an incompressible sheet stretched alike both ways."""
+    return 2.0 * stretch * stretch + stretch ** -4, 2.0 * stretch ** -2 + stretch ** 4
+
+
+def plane_strain(stretch: float) -> tuple[float, float]:
+    """Return I1bar and I2bar, which are equal, of a sheet held across the stretch."""
+    return (stretch * stretch + stretch ** -2 + 1.0,) * 2
+
+
+def locking_stretch(law: Law, invariants: Callable[[float], tuple[float, float]]) -> float:
+    """Return the stretch at which the law locks up, infinite if it never does.
+
+    ``invariants(stretch)`` are I1bar and I2bar.
+    """
+    def overrun(stretch):
+        return law.overrun(*invariants(stretch))
+    return brentq(overrun, 1.0, 1.0e6) if overrun(1.0e6) > 0.0 else np.inf
 
 
 def equibiaxial_pull_in(elastomer: Elastomer, load: float = 0.0) -> PullIn:
     """Return the first pull-in of a free sheet under a dead load, see `equibiaxial_field`.
 
-    Raises `BadInput` if its voltage rises all the way to the Gent limit.
+    Raises `BadInput` if its voltage rises until the law locks up, or up to `FARTHEST`.
     """
-    end = NEARLY * locking_stretch(elastomer, lambda s: 2.0 * s * s + s ** -4)
+    law = elastomer.law
+    locking = locking_stretch(law, equibiaxial)
+    end = NEARLY * locking if np.isfinite(locking) else FARTHEST
     start = _passive_stretch(elastomer, load, end)
     stretch = np.geomspace(start, end, TRACE)
     field = equibiaxial_field(elastomer, stretch, load)
     falling = np.flatnonzero(np.diff(field) < 0.0)
     if not falling.size:
-        raise BadInput(f'no pull-in: the voltage rises up to the Gent limit '
-                       f'{elastomer.gent_limit:g} at stretch {end:.4g}')
+        until = f'until {law.limit} at' if np.isfinite(locking) else 'up to'
+        raise BadInput(f'no pull-in: the voltage rises {until} stretch {end:.4g}')
     k = max(int(falling[0]), 1)
     peak = _maximum(lambda s: float(equibiaxial_field(elastomer, s, load)),
                     stretch[k - 1], stretch[k + 1])

@@ -7,7 +7,7 @@ To the long-term stress of the elastomer, branches i add the second Piola-Kirchh
 
     dh_i/dt + h_i / tau_i = beta_i dS_dev/dt,
 
-with S_dev the deviatoric stress of the Gent energy. A step of dt in which S_dev changes linearly
+with S_dev the deviatoric stress of the law. A step of dt in which S_dev changes linearly
 is solved exactly: h_i' = e_i h_i + beta_i r_i (S_dev' - S_dev), e = exp(-dt/tau),
 r = (1 - e) tau / dt. Statics see the long-term elastomer.
 """

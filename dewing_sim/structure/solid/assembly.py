@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from dewing_sim.structure.material.elastomer import deviatoric_stress, energy
+from dewing_sim.structure.material.elastomer import energy
+from dewing_sim.structure.material.law import deviatoric
 from dewing_sim.structure.solid.element import (
     BALANCED,
     GAUSS,
@@ -68,21 +69,21 @@ def add_stiffness(band, curvature, k, length, height, lateral, equation, half):
 
 
 @KERNEL
-def respond(position, held, length, height, lateral, field, mu, jm, bulk, eps):
+def respond(position, held, length, height, lateral, field, constants):
     """Return nodal forces (2(n+1), 2), tension and thinning of elements (n,), status, element.
 
     The tension is the force through a cross-section, negative if it pushes. ``held`` (3, 4n) is a
-    viscous overstress at the integration points, see `solid_element`.
+    viscous overstress at the integration points, see `element`.
     """
     n = length.size
     force, tension, thinning = np.zeros(position.shape), np.empty(n), np.empty(n)
     for k in range(n):
         z = shape(position, k, length[k], height)
         strains = measures(z, length[k], height)
-        a, b, status = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
+        a, b, status = relax(strains, held, k, lateral, field, constants)
         if status != BALANCED:
             return force, tension, thinning, status, k
-        by = gradient(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps)
+        by = gradient(strains, held, k, a, b, lateral, field, constants)
         slope = shape_gradient(z, strains, by, length[k], height)
         tension[k] = math.copysign(height / lateral * math.hypot(slope[0], slope[1]),
                                    slope[0] * z[0] + slope[1] * z[1])
@@ -92,7 +93,7 @@ def respond(position, held, length, height, lateral, field, mu, jm, bulk, eps):
 
 
 @KERNEL
-def stiffness(position, held, length, height, lateral, field, mu, jm, bulk, eps, equation,
+def stiffness(position, held, length, height, lateral, field, constants, equation,
               before, band):
     """Add the tangent to ``band`` (2 w + 1, m); return status and element.
 
@@ -104,12 +105,12 @@ def stiffness(position, held, length, height, lateral, field, mu, jm, bulk, eps,
     for k in range(length.size):
         z = shape(position, k, length[k], height)
         strains = measures(z, length[k], height)
-        a, b, status = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
+        a, b, status = relax(strains, held, k, lateral, field, constants)
         if status != BALANCED:
             return status, k
         excess = second_order_area(z, shape(before, k, length[k], height))
-        by = gradient(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps)
-        hessian(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps, excess, inner)
+        by = gradient(strains, held, k, a, b, lateral, field, constants)
+        hessian(strains, held, k, a, b, lateral, field, constants, excess, inner)
         condense(inner)
         shape_hessian(z, strains, by, inner, length[k], height, jacobian, curvature)
         add_stiffness(band, curvature, k, length[k], height, lateral, equation, half)
@@ -117,13 +118,13 @@ def stiffness(position, held, length, height, lateral, field, mu, jm, bulk, eps,
 
 
 @KERNEL
-def energies(position, held, length, height, lateral, field, mu, jm, bulk, eps):
+def energies(position, held, length, height, lateral, field, constants):
     """Return the elastic and the electrostatic energy eps J E^2 / 2 per unit span."""
     elastic, electric = 0.0, 0.0
     for k in range(length.size):
         strains = measures(shape(position, k, length[k], height), length[k], height)
         sa, sb, sd, p, q, _ = strains
-        a, b, _ = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
+        a, b, _ = relax(strains, held, k, lateral, field, constants)
         volume = 0.25 * length[k] * height / lateral
         for point in range(4):
             xi = GAUSS if point & 1 else -GAUSS
@@ -132,25 +133,25 @@ def energies(position, held, length, height, lateral, field, mu, jm, bulk, eps):
             i1 = s1 * s1 * sa + s2 * s2 * sb + lateral * lateral
             j = lateral * s1 * s2 * sd
             y_squared = lateral * lateral * field * s1 * s1 * sa
-            elastic += volume * energy(i1, j, 0.0, mu, jm, bulk, eps)
-            electric += volume * 0.5 * eps * y_squared / j
+            elastic += volume * energy(i1, j, 0.0, lateral, constants)
+            electric += volume * 0.5 * constants.eps * y_squared / j
     return elastic, electric
 
 
 @KERNEL
-def deviatoric_stresses(position, held, length, height, lateral, field, mu, jm, bulk, eps):
-    """Return S_11, S_22, S_12 of the Gent energy at the integration points, (3, 4n)."""
+def deviatoric_stresses(position, held, length, height, lateral, field, constants):
+    """Return S_11, S_22, S_12 of the law at the integration points, (3, 4n)."""
     stresses = np.empty((3, 4 * length.size))
     for k in range(length.size):
         strains = measures(shape(position, k, length[k], height), length[k], height)
         sa, sb, _, p, q, sg = strains
-        a, b, _ = relax(strains, held, k, lateral, field, mu, jm, bulk, eps)
+        a, b, _ = relax(strains, held, k, lateral, field, constants)
         for point in range(4):
             xi = GAUSS if point & 1 else -GAUSS
             eta = GAUSS if point & 2 else -GAUSS
             s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
-            found = deviatoric_stress(s1 * s1 * sa, s2 * s2 * sb, s1 * s2 * sg,
-                                      lateral * lateral, mu, jm)
+            found = deviatoric(s1 * s1 * sa, s2 * s2 * sb, s1 * s2 * sg,
+                                      lateral * lateral, constants)
             for i in range(3):
                 stresses[i, 4 * k + point] = found[i]
     return stresses

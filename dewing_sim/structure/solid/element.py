@@ -40,11 +40,12 @@ def _held_at(held, k, point):
 
 
 @KERNEL
-def relax(strains, held, k, lateral, field, mu, jm, bulk, eps):
+def relax(strains, held, k, lateral, field, constants):
     """Return the enhanced strains a, b that minimise the energy of element k, and a status.
 
     ``field`` is (V / H)^2, ``held`` (3, 4n) the overstress H_11, H_22, H_12 at the points. Newton
     from the incompressible first-order solution a = -q, b = -p.
+    ``constants`` are `Elastomer.constants`.
     """
     sa, sb, sd, p, q, sg = strains
     a, b = -q, -p
@@ -61,8 +62,8 @@ def relax(strains, held, k, lateral, field, mu, jm, bulk, eps):
                 return a, b, INVERTED
             i1 = s1 * s1 * sa + s2 * s2 * sb + lateral * lateral
             j = lateral * s1 * s2 * sd
-            s = slopes(i1, j, electric * s1 * s1, mu, jm, bulk, eps)
-            if not s.f > 0.0:           # the Gent energy has no slope beyond its limit
+            s = slopes(i1, j, electric * s1 * s1, lateral, constants)
+            if not s.f > 0.0:           # the law locks up or fails
                 return a, b, LOCKED
             f1, c1, y1 = s1 * sa, j / s1, s1 * electric
             f2, c2 = s2 * sb, j / s2
@@ -89,7 +90,7 @@ def _relieved(s, pressure):
 
 
 @KERNEL
-def gradient(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps):
+def gradient(strains, held, k, a, b, lateral, field, constants):
     """Return the derivatives of the mean energy by A, B, D, p, q, G, with relaxed a and b."""
     sa, sb, sd, p, q, sg = strains
     squared = lateral * lateral * field
@@ -100,7 +101,7 @@ def gradient(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps):
         s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
         area = lateral * s1 * s2
         s = slopes(s1 * s1 * sa + s2 * s2 * sb + lateral * lateral, area * sd,
-                   squared * s1 * s1 * sa, mu, jm, bulk, eps)
+                   squared * s1 * s1 * sa, lateral, constants)
         h11, h22, h12 = _held_at(held, k, point)
         by_a += 0.125 * s1 * s1 * (stress(s, 1.0, 0.0, squared) + h11)
         by_b += 0.125 * s2 * s2 * (s.f + h22)
@@ -114,11 +115,11 @@ def gradient(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps):
 
 
 @KERNEL
-def hessian(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps, excess, result):
+def hessian(strains, held, k, a, b, lateral, field, constants, excess, result):
     """Fill ``result`` (8, 8) with the Hessian of the mean energy in A, B, D, p, q, G, a, b.
 
     It takes the pressure of the volume that D - ``excess`` makes: zero for the exact Hessian, see
-    `solid_shape.second_order_area` for Newton's method.
+    `shape.second_order_area` for Newton's method.
     """
     sa, sb, sd, p, q, sg = strains
     result[:] = 0.0
@@ -129,8 +130,8 @@ def hessian(strains, held, k, a, b, lateral, field, mu, jm, bulk, eps, excess, r
         s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
         area = s1 * s2 * lateral
         s = slopes(s1 * s1 * sa + s2 * s2 * sb + lateral * lateral, area * sd,
-                   squared * s1 * s1 * sa, mu, jm, bulk, eps)
-        settled = _relieved(s, 2.0 * bulk * area * excess)
+                   squared * s1 * s1 * sa, lateral, constants)
+        settled = _relieved(s, 2.0 * constants.bulk * area * excess)
         _add_point(result, settled, s1, s2, sa, sb, sd, lateral, squared, xi, eta)
         _add_held(result, _held_at(held, k, point), s1, s2, sa, sb, sg, xi, eta)
     for row in range(8):

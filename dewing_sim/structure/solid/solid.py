@@ -165,7 +165,7 @@ class Solid(Taut, Viscous):
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return the response at ``position`` (2(n+1), 2) and V^2.
 
-        Raises `BadInput` for a negative or non-finite V^2, `Diverged` beyond the Gent limit or
+        Raises `BadInput` for a negative or non-finite V^2, `Diverged` where the law locks up or
         where an element turns inside out.
         """
         if not 0.0 <= v_squared < math.inf:
@@ -236,10 +236,9 @@ class Solid(Taut, Viscous):
 
     def _constants(self, v_squared: float) -> tuple:
         height = self.sheet.initial_thickness
-        mu, *others = self.sheet.elastomer.constants
         gain, held = self.overstress or (0.0, self._no_stress)
         return (held, self.length, height, self.sheet.lateral_stretch, v_squared / height ** 2,
-                (1.0 + gain) * mu, *others)
+                self.sheet.elastomer.stiffened(gain))
 
     @cached_property
     def _no_stress(self) -> np.ndarray:
@@ -254,8 +253,7 @@ class Solid(Taut, Viscous):
             raise Diverged(f'{where}: the deformation is not finite; '
                            'reduce the time step or the load')
         if status == LOCKED:
-            raise Diverged(f'{where}: I1bar - 3 reaches the Gent limit '
-                           f'{self.sheet.elastomer.gent_limit:.6g}; '
+            raise Diverged(f'{where}: {self.sheet.elastomer.law.limit}; '
                            'reduce the load, the prestretch or the time step')
         raise Diverged(f'{where}: the element turns inside out or its thickness pulls in; '
                        'reduce the voltage, the load or the time step')

@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.structure.material.elastomer import VACUUM_PERMITTIVITY, Elastomer
+from dewing_sim.structure.material.gent import Gent
 from dewing_sim.structure.sheet import Sheet
 
 MU, JM, BULK, EPS = 2.0e4, 100.0, 3.8e8, 2.7 * VACUUM_PERMITTIVITY
 H = 5.0e-5
-VHB = Elastomer(MU, JM, BULK, EPS)
-NEO_HOOKEAN = Elastomer(MU, 1.0e9, 1.0e4 * BULK, EPS)
+VHB = Elastomer(Gent(MU, JM), BULK, EPS)
+NEO_HOOKEAN = Elastomer(Gent(MU, 1.0e9), 1.0e4 * BULK, EPS)
 STRETCH = np.array([1.02, 1.1, 1.5, 2.0, 4.0])
 ONE_SENTENCE = re.compile(r'[^.]([^.]|\.\d)*[^.]')
 
@@ -40,7 +41,7 @@ def caught(sheet: Sheet, stretch: list[float], v_squared: float) -> str:
 @pytest.mark.parametrize('v_squared', [0.0, 1.0e5])
 @pytest.mark.parametrize('lateral', [1.0, 1.3])
 def test_incompressible_gent_sheet_with_lateral_stretch_and_voltage(lateral, v_squared):
-    sheet = Sheet(Elastomer(MU, JM, 1.0e4 * BULK, EPS), H, lateral)
+    sheet = Sheet(Elastomer(Gent(MU, JM), 1.0e4 * BULK, EPS), H, lateral)
     response = sheet.respond(STRETCH, v_squared)
     assert response.thickness == pytest.approx(H / (lateral * STRETCH), rel=1.0e-7)
     assert response.tension == pytest.approx(
@@ -63,7 +64,7 @@ def test_slopes_of_the_incompressible_neo_hookean_sheet(lateral, v_squared):
        stretch=st.floats(1.0, 3.0), push=st.floats(0.0, 0.3))
 def test_slopes_are_differences_whatever_the_constants(jm, ratio, lateral, stretch, push):
     """``push`` is eps V^2 / (mu H^2); fourth-order differences of step 1e-3."""
-    sheet = Sheet(Elastomer(MU, jm, ratio * MU, EPS), H, lateral)
+    sheet = Sheet(Elastomer(Gent(MU, jm), ratio * MU, EPS), H, lateral)
     unit = MU * H**2 / EPS
     response = sheet.respond([stretch], push * unit)
 
@@ -84,7 +85,7 @@ def test_slopes_are_differences_whatever_the_constants(jm, ratio, lateral, stret
        push=st.floats(0.0, 0.3))
 def test_tension_does_the_work_that_the_energies_store(ratio, lateral, stretch, push):
     """At constant voltage T l2 = H d(elastic - electric) / dl, per unstretched area."""
-    sheet = Sheet(Elastomer(MU, JM, ratio * MU, EPS), H, lateral)
+    sheet = Sheet(Elastomer(Gent(MU, JM), ratio * MU, EPS), H, lateral)
     v_squared, step = push * MU * H**2 / EPS, 1.0e-3
 
     def potential(k):
@@ -129,7 +130,7 @@ def test_loss_of_tension_of_clamped_neo_hookean_sheet(stretch):
 @given(jm=st.floats(20.0, 200.0), ratio=st.floats(50.0, 1.0e4), lateral=st.floats(0.9, 1.5),
        stretch=st.floats(1.1, 3.0))
 def test_tension_changes_sign_at_its_loss(jm, ratio, lateral, stretch):
-    sheet = Sheet(Elastomer(MU, jm, ratio * MU, EPS), H, lateral)
+    sheet = Sheet(Elastomer(Gent(MU, jm), ratio * MU, EPS), H, lateral)
     limit = sheet.loss_of_tension_v_squared(stretch)
     below, at, above = (sheet.respond([stretch], share * limit).tension[0]
                         for share in (0.99, 1.0, 1.01))
@@ -145,7 +146,7 @@ def test_unstretched_sheet_has_no_tension_to_lose():
 @pytest.mark.parametrize('bulk', [1.0e5, BULK])
 @pytest.mark.parametrize('v_squared', [0.0, 2.0e5])
 def test_sheet_slopes_are_consistent(bulk, v_squared):
-    sheet = Sheet(Elastomer(MU, JM, bulk, EPS), H, 1.2)
+    sheet = Sheet(Elastomer(Gent(MU, JM), bulk, EPS), H, 1.2)
     stretch = np.array([1.02, 1.4, 2.5, 5.0])
     step = 1.0e-5
     response = sheet.respond(stretch, v_squared)
@@ -157,7 +158,7 @@ def test_sheet_slopes_are_consistent(bulk, v_squared):
 
 
 def test_response_does_not_depend_on_the_neighbours():
-    sheet = Sheet(Elastomer(MU, JM, 1.0e5, EPS), H)
+    sheet = Sheet(Elastomer(Gent(MU, JM), 1.0e5, EPS), H)
     together = sheet.respond([1.1, 4.0, 1.3], 1.0e5)
     alone = [sheet.respond([stretch], 1.0e5).tension[0] for stretch in (1.1, 4.0, 1.3)]
     assert together.tension == pytest.approx(alone, rel=1e-11)
@@ -170,7 +171,7 @@ def test_gent_locking_is_named():
 
 
 def test_thickness_pull_in_is_named():
-    assert caught(Sheet(Elastomer(1.0e3, JM, 1.0e3, EPS), H), [1.5], 1.0e8) == (
+    assert caught(Sheet(Elastomer(Gent(1.0e3, JM), 1.0e3, EPS), H), [1.5], 1.0e8) == (
         'element 0 at stretch 1.5 and 10000 V: no thickness balances the Maxwell stress; '
         'reduce the voltage')
 

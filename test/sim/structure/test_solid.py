@@ -14,6 +14,7 @@ from dewing_sim.scales import Scales
 from dewing_sim.structure import elements
 from dewing_sim.structure.dynamics.band import full
 from dewing_sim.structure.material.elastomer import Elastomer
+from dewing_sim.structure.material.gent import Gent
 from dewing_sim.structure.membrane import Membrane
 from dewing_sim.structure.sheet import Sheet
 from dewing_sim.structure.solid import assembly as solid_assembly
@@ -26,7 +27,7 @@ SECTION = parameters.replace(parameters.load('paper').membrane,
                              {'element': 'solid', 'elements': 64})
 PAPER = Solid.from_parameters(SECTION)
 SHEET = PAPER.sheet
-SOFT = Elastomer(2.0e4, 30.0, 1.0e6, SHEET.elastomer.permittivity)
+SOFT = Elastomer(Gent(2.0e4, 30.0), 1.0e6, SHEET.elastomer.permittivity)
 
 
 def strip(sheet=SHEET, n=6, prestretch=1.5, support=MIDDLE):
@@ -50,7 +51,7 @@ def gradients(solid, position, k):
     strains = solid_shape.measures(z, length, height)
     field = 0.0
     a, b, status = element.relax(strains, np.zeros((3, 4)), 0, solid.sheet.lateral_stretch, field,
-                                 *solid.sheet.elastomer.constants)
+                                 solid.sheet.elastomer.constants)
     assert status == element.BALANCED
     result = []
     for eta in (-element.GAUSS, element.GAUSS):
@@ -157,7 +158,7 @@ def patch(lengths, gradient):
     reference = np.stack([x, np.tile([0.0, 5.0e-5], lengths.size + 1)], axis=1)
     held = np.zeros((3, 4 * lengths.size))
     result = solid_assembly.respond(reference @ gradient.T, held, lengths, 5.0e-5, 1.0, 0.0,
-                                    *SHEET.elastomer.constants)
+                                    SHEET.elastomer.constants)
     assert result[3] == element.BALANCED
     return result[0]
 
@@ -184,12 +185,12 @@ def linear_cantilever(slenderness, n):
     equation = np.arange(4 * (n + 1)) - 4
     band = np.zeros((15, 4 * n))
     assert solid_assembly.stiffness(position, np.zeros((3, 4 * n)), lengths, height, 1.0, 0.0,
-                                    *SHEET.elastomer.constants, equation, position,
+                                    SHEET.elastomer.constants, equation, position,
                                     band)[0] == element.BALANCED
     load = np.zeros(4 * n)
     load[[-3, -1]] = 0.5
     tip = solve_banded((7, 7), band, load)[[-3, -1]].mean()
-    mu = SHEET.elastomer.shear_modulus      # plane strain, incompressible: E / (1 - nu^2) = 4 mu
+    mu = SHEET.elastomer.law.shear_modulus      # plane strain, incompressible: E / (1 - nu^2) = 4 mu
     bending = length ** 3 / (3.0 * 4.0 * mu * height ** 3 / 12.0)
     shear = length / (mu * height)
     return tip / (bending + shear)
@@ -208,9 +209,9 @@ def test_every_deformation_of_an_element_costs_energy():
         position = np.array([[0.0, 0.0], [0.0, 5.0e-5], [length, 0.0], [length, 5.0e-5]])
         band = np.zeros((15, 8))
         solid_assembly.stiffness(position, np.zeros((3, 4)), np.array([length]), 5.0e-5, 1.0, 0.0,
-                                 *SHEET.elastomer.constants, np.arange(8), position,
+                                 SHEET.elastomer.constants, np.arange(8), position,
                                  band)
-        values = np.linalg.eigvalsh(full(band)) / SHEET.elastomer.shear_modulus
+        values = np.linalg.eigvalsh(full(band)) / SHEET.elastomer.law.shear_modulus
         assert np.abs(values[:3]).max() < 1e-9 < 0.05 < values[3] < values[6] < 20.0
         assert values[7] > 1e4      # the change of volume
 
