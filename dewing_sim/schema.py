@@ -141,7 +141,7 @@ def check(name: str, field: dataclasses.Field, value: Any) -> Any:
 
 def _checked_numbers(name: str, field: dataclasses.Field, value: Any) -> Numbers:
     if not isinstance(value, Mapping):
-        raise BadInput(f'{name}: expected names and numbers, got {value!r}: {describe(field)}')
+        raise BadInput(f'{name} = {value!r} is not a section of numbers: {describe(field)}')
     for key, number in value.items():
         if not isinstance(key, str) or not key.isidentifier():
             raise BadInput(f'{name}.{key} is not a name: letters, digits and _')

@@ -145,8 +145,8 @@ class Sheet:
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Sheet':
         """Return the sheet of a parameter section in the units of ``scales``, see `registry`."""
-        return cls(registry.elastomer_of(section, scales), section.initial_thickness / scales.length,
-                   section.prestretch_lateral)
+        return cls(registry.elastomer_of(section, scales),
+                   section.initial_thickness / scales.length, section.prestretch_lateral)
 
     def respond(self, stretch, v_squared: float, overstress: Overstress | None = None,
                 ) -> Response:

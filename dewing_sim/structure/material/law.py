@@ -7,7 +7,7 @@ the strip, is prescribed. An isotropic energy W of the change of shape then depe
 
     I1 = tr(F^T F),   J = det F   and the prescribed stretch lambda_z
 
-only: the other two squared stretches have the sum I1 - lambda_z^2 and the product (J / lambda_z)^2.
+only: of the other two, the squares have the sum I1 - lambda_z^2 and the product (J / lambda_z)^2.
 A law is therefore given to compiled code by three functions, `Compiled`, with derivatives by I1
 and J at fixed lambda_z. Laws rarely write them: the classes of `forms` make them of derivatives by
 the invariants or of exponents.

@@ -3,8 +3,8 @@
 """How far a dielectric elastomer can go: voltage-stretch curves, pull-in, locking, breakdown.
 
 The curves are followed in the stretch, which passes the voltage's maxima. At a maximum the
-thickness pulls in under constant voltage; the sheet snaps to the branch beyond, if the law stiffens
-enough to make the voltage rise again (Zhao and Suo, doi 10.1063/1.2768641).
+thickness pulls in under constant voltage; the sheet snaps to the branch beyond, if the law
+stiffens enough to make the voltage rise again (Zhao and Suo, doi 10.1063/1.2768641).
 """
 
 from typing import Callable, NamedTuple

@@ -18,10 +18,10 @@ def terms(k):
 
 @dataclass(frozen=True)
 class Ogden(StretchLaw):
-    """W = sum mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3), mu = sum mu_p alpha_p / 2.
+    """W = sum mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3), isochoric stretches.
 
-    The l_i are isochoric. Each mu_p has the sign of its alpha_p in a law that is stable
-    everywhere; other signs are admitted as long as mu is positive.
+    The initial shear modulus is mu = sum mu_p alpha_p / 2. Each mu_p has the sign of its alpha_p
+    in a law that is stable everywhere; other signs are admitted as long as mu is positive.
     """
 
     TITLE = 'Ogden'

@@ -151,7 +151,7 @@ def deviatoric_stresses(position, held, length, height, lateral, field, constant
             eta = GAUSS if point & 2 else -GAUSS
             s1, s2 = 1.0 + xi * a + eta * p, 1.0 + eta * b + xi * q
             found = deviatoric(s1 * s1 * sa, s2 * s2 * sb, s1 * s2 * sg,
-                                      lateral * lateral, constants)
+                               lateral * lateral, constants)
             for i in range(3):
                 stresses[i, 4 * k + point] = found[i]
     return stresses

@@ -190,7 +190,7 @@ def linear_cantilever(slenderness, n):
     load = np.zeros(4 * n)
     load[[-3, -1]] = 0.5
     tip = solve_banded((7, 7), band, load)[[-3, -1]].mean()
-    mu = SHEET.elastomer.law.shear_modulus      # plane strain, incompressible: E / (1 - nu^2) = 4 mu
+    mu = SHEET.elastomer.law.shear_modulus  # plane strain, incompressible: E / (1 - nu^2) = 4 mu
     bending = length ** 3 / (3.0 * 4.0 * mu * height ** 3 / 12.0)
     shear = length / (mu * height)
     return tip / (bending + shear)
