@@ -16,11 +16,11 @@ import numpy as np
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.scales import Scales
+from dewing_sim.structure.base import Taut
 from dewing_sim.structure.dynamics import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
 from dewing_sim.structure.material.viscosity import Overstress, Prony, Viscous
 from dewing_sim.structure.sheet import SI, Response, Sheet
-from dewing_sim.structure.taut import Taut
 
 
 def _edges(position: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -6,14 +6,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-
-class Structure(Protocol):
-    """What the balance needs of a structure."""
-
-    mass: np.ndarray
-
-    def energies(self, position: np.ndarray, v_squared: float) -> tuple[float, float]:
-        """Return the elastic and the electrostatic energy."""
+from dewing_sim.structure.base import Structure
 
 
 class State(Protocol):

@@ -3,41 +3,18 @@
 """Static equilibrium under pressure and voltage by Newton iterations along load steps."""
 
 import math
-from typing import Callable, Protocol
+from typing import Callable
 
 import numpy as np
 from scipy.linalg import solve_banded
 
 from dewing_sim.errors import Diverged, NotConverged, RunFailed
+from dewing_sim.structure.base import Structure
 
 TOLERANCE = 1.0e-12     # chords
 ROUNDING = 1.0e-9       # chords, below which a correction that no longer shrinks is rounding
 ITERATIONS = 40
 SMALLEST_SHARE = 2.0 ** -13
-
-
-class Structure(Protocol):
-    """What statics needs of a structure; nodal arrays are (nodes, 2), forces per span."""
-
-    rest_position: np.ndarray
-    chord: float
-    free: np.ndarray
-
-    def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
-        """Return the nodal gradient of the potential energy."""
-
-    def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
-        """Return the nodal forces of a pressure jump."""
-
-    def tangent(self, position: np.ndarray, v_squared: float, pressure,
-                before: np.ndarray | None) -> np.ndarray:
-        """Return d(internal - pressure force)/d(position) as a band (2 w + 1, m)."""
-
-    def require_bearable(self, position: np.ndarray, v_squared: float) -> None:
-        """Raise `Slack` if V^2 takes all tension at the stretch of ``position``."""
-
-    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
-        """Raise `Slack` if the structure cannot carry its state."""
 
 
 def equilibrium(structure: Structure, pressure, v_squared: float, follower: bool = True,

@@ -10,7 +10,7 @@ system of units.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -19,35 +19,20 @@ import numpy as np
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.scales import Scales
+from dewing_sim.structure.base import Taut
 from dewing_sim.structure.dynamics import statics
 from dewing_sim.structure.follower import pressure_force, subtract_stiffness
 from dewing_sim.structure.material.viscosity import Overstress, Prony, Viscous
 from dewing_sim.structure.sheet import SI, Sheet
-from dewing_sim.structure.solid import assembly
+from dewing_sim.structure.solid import assembly, pins, strip
 from dewing_sim.structure.solid.element import BALANCED, LOCKED
-from dewing_sim.structure.solid.pins import (
-    LOWER,
-    MIDDLE,
-    Springs,
-    equations,
-    mid_plane_weights,
-)
-from dewing_sim.structure.solid.strip import (
-    gather,
-    lengths,
-    mid_line,
-    nodal_mass,
-    straight_edges,
-    straighten,
-    to_nodes,
-)
-from dewing_sim.structure.taut import Taut
+from dewing_sim.structure.solid.fitting import fitted
+from dewing_sim.structure.solid.pins import LOWER, MIDDLE
 
 HALF_BAND = 7               # couplings of a degree of freedom on either side
 EDGE_LENGTH = 2.0           # of the first element, in deformed thicknesses
 EDGE_LAYER = 6.0            # deformed thicknesses, in which the mid-plane leaves the pins
 LINEAR = 1.0e-4             # of the thickness
-FITS = 10                   # of the reference length
 
 
 class Response(NamedTuple):
@@ -90,14 +75,14 @@ class Solid(Taut, Viscous):
         if elements < 4:
             raise BadInput(f'elements = {elements} is out of range: at least 4')
         thickness = float(sheet.respond([prestretch], 0.0).thickness[0])
-        share = lengths(elements, EDGE_LENGTH * thickness / chord)
+        share = strip.lengths(elements, EDGE_LENGTH * thickness / chord)
         position = np.zeros((2 * elements + 2, 2))
         position[:, 0] = np.repeat(chord * np.concatenate([[0.0], np.cumsum(share)]), 2)
         position[0::2, 1], position[1::2, 1] = -0.5 * thickness, 0.5 * thickness
         total = chord / prestretch
         solid = cls(sheet, prestretch, chord, MIDDLE, total * share,
-                    nodal_mass(total * share, sheet, density), position, viscosity)
-        return solid if support == MIDDLE else _fitted(solid, density)
+                    strip.nodal_mass(total * share, sheet, density), position, viscosity)
+        return solid if support == MIDDLE else fitted(solid, density)
 
     @classmethod
     def from_parameters(cls, section: parameters.Membrane, scales: Scales = SI) -> 'Solid':
@@ -119,17 +104,18 @@ class Solid(Taut, Viscous):
 
     @cached_property
     def _equations(self) -> np.ndarray:
-        return equations(self.elements, self.support)
+        return pins.equations(self.elements, self.support)
 
     @cached_property
     def _share(self) -> np.ndarray:
-        return mid_plane_weights(self.elements, self.support)
+        return pins.mid_plane_weights(self.elements, self.support)
 
     @cached_property
-    def _springs(self) -> Springs | None:
-        return (Springs(self.rest_position, self.rest_tension(0.0),
-                        self.sheet.elastomer.bulk_modulus)
-                if self.support == MIDDLE else None)
+    def _springs(self) -> pins.Springs | None:
+        if self.support != MIDDLE:
+            return None
+        return pins.Springs(self.rest_position, self.rest_tension(0.0),
+                            self.sheet.elastomer.bulk_modulus)
 
     @property
     def linear_range(self) -> float:
@@ -145,22 +131,22 @@ class Solid(Taut, Viscous):
         That is the mid-plane and, within a few thicknesses of edges pinned at their lower side,
         where the strip bends away from its line of tension, the straight line to the pins.
         """
-        line = mid_line(nodal, self._share)
-        straighten(line, *self._edges)
+        line = strip.mid_line(nodal, self._share)
+        strip.straighten(line, *self._edges)
         return line
 
     def spread(self, force: np.ndarray) -> np.ndarray:
         """Return the nodal forces of forces (n+1, 2) on the surface, its transpose."""
         force = force.copy()
-        gather(force, *self._edges)
-        return to_nodes(force, self._share)
+        strip.gather(force, *self._edges)
+        return strip.to_nodes(force, self._share)
 
     @cached_property
     def _edges(self) -> tuple[int, np.ndarray, np.ndarray]:
         """Stations on the straight edges, and their weights of the pin and the end, (k, 2)."""
         thickness = self.sheet.initial_thickness / self.prestretch
         layer = EDGE_LAYER * thickness if self.support == LOWER else 0.0
-        return straight_edges(mid_line(self.rest_position, self._share)[:, 0], layer)
+        return strip.straight_edges(strip.mid_line(self.rest_position, self._share)[:, 0], layer)
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return the response at ``position`` (2(n+1), 2) and V^2.
@@ -219,7 +205,8 @@ class Solid(Taut, Viscous):
 
     def pressure_force(self, position: np.ndarray, pressure) -> np.ndarray:
         """Return the nodal forces of a pressure jump on the mid-plane, scalar or (n,), to +y."""
-        return to_nodes(pressure_force(mid_line(position, self._share), pressure), self._share)
+        line = strip.mid_line(position, self._share)
+        return strip.to_nodes(pressure_force(line, pressure), self._share)
 
     def rest_tension(self, v_squared: float) -> float:
         """Return the tension of the flat unloaded sheet at the prestretch."""
@@ -257,30 +244,3 @@ class Solid(Taut, Viscous):
                            'reduce the load, the prestretch or the time step')
         raise Diverged(f'{where}: the element turns inside out or its thickness pulls in; '
                        'reduce the voltage, the load or the time step')
-
-
-def _fitted(solid: Solid, density: float) -> Solid:
-    """Return a strip on lower pins, with the prestretch inside, from one held in the middle."""
-    target = solid.rest_tension(0.0)
-    slope = float(solid.sheet.respond([solid.prestretch], 0.0).stiffness[0]) * solid.prestretch
-    hanging = _released(solid)
-    for _ in range(FITS):
-        tension = float(np.median(hanging.tension(hanging.rest_position, 0.0)))
-        if abs(tension - target) <= 1.0e-9 * target:
-            break
-        length = hanging.length * (1.0 - (target - tension) / slope)
-        cut = replace(hanging, length=length, mass=nodal_mass(length, solid.sheet, density))
-        hanging = replace(cut, rest_position=statics.newton(cut, hanging.rest_position, 0.0))
-    return hanging
-
-
-def _released(solid: Solid) -> Solid:
-    """Return the strip on lower pins, at rest: the reaction on the upper sides fades away."""
-    lower = replace(solid, support=LOWER)
-    position = statics.newton(solid, solid.rest_position, 0.0)
-    reaction = np.zeros_like(position)
-    reaction[[1, -1]] = lower.internal_force(position, 0.0)[[1, -1]]
-    position = statics.march(
-        lambda start, share: statics.newton(lower, start, 0.0, held=(1.0 - share) * reaction),
-        position)
-    return replace(lower, rest_position=position - position[0])
