@@ -8,6 +8,13 @@ from dewing_sim.fluid.base import Fluid
 from dewing_sim.records.history import History
 
 INSTANTS = 10           # at most, whose CFL numbers are evaluated
+PLAIN = {'camber_mean': 'camber_mean', 'camber_max': 'camber_max', 'tension': 'tension',
+         'camber_max_position': 'camber_max_x_c'}       # names of means without that word
+
+
+def mean_name(output: str) -> str:
+    """Return what the time average of an output is called in results."""
+    return PLAIN.get(output, f'{output}_mean')
 
 
 class Watch:
@@ -39,15 +46,11 @@ class Watch:
 def averages(late: History, reference_deflection: float) -> dict[str, float]:
     """Return time averages of the part of a run that is averaged, in SI units.
 
-    ``y_star`` is the largest camber over ``reference_deflection`` (m), y_ref = q c^2 / (8 T0);
-    ``cl_rms`` is the standard deviation of Cl.
+    They are those of every output that answers V^2, by `mean_name`. ``y_star`` is the largest
+    camber over ``reference_deflection`` (m), y_ref = q c^2 / (8 T0); ``cl_rms`` is the standard
+    deviation of Cl.
     """
-    camber_max = float(late.camber_max.mean())
-    return {
-        'cl_mean': float(late.cl.mean()), 'cl_rms': float(late.cl.std()),
-        'cd_mean': float(late.cd.mean()), 'cm_mean': float(late.cm.mean()),
-        'y_star': camber_max / reference_deflection, 'camber_max': camber_max,
-        'camber_max_x_c': float(late.camber_max_position.mean()),
-        'camber_mean': float(late.camber_mean.mean()), 'tension': float(late.tension.mean()),
-        'coupling_iterations_mean': float(late.coupling_iterations.mean()),
-    }
+    means = {mean_name(name): float(column.mean()) for name, column in late.columns.items()
+             if name not in ('time', 'v_squared')}
+    return {**means, 'cl_rms': float(late.cl.std()),
+            'y_star': means['camber_max'] / reference_deflection}

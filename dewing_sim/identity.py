@@ -12,7 +12,8 @@ import yaml
 
 from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Case
-from dewing_sim.plant import Plant
+from dewing_sim.plant import Outputs, Plant, units_of
+from dewing_sim.quantities import Absent, schema
 from dewing_sim.scales import Scales
 
 
@@ -37,12 +38,13 @@ class Identity:
 
     plant: str                      # wing or reduced
     dt: float                       # s
-    camber_mean: float              # m, passive: a_ref of a controller on mean camber
-    camber_max: float               # m, passive: a_ref of a controller on maximum camber
+    camber_mean: float | None       # m, passive: a_ref of a controller on mean camber
+    camber_max: float | None        # m, passive: a_ref on maximum camber; None: not an output
     v_squared_slack: float          # V^2 at the loss of tension, V_L^2
     v_squared_max: float            # V^2 the plant accepts
     case: dict                      # nested parameters of the case, empty when unknown
     version: str
+    outputs: dict | None = None     # units of what responds to V^2; None: those of `Outputs`
 
     @classmethod
     def of(cls, name: str, plant: Plant, rest: Any, v_squared_max: float, case: dict,
@@ -51,24 +53,45 @@ class Identity:
 
         ``camber`` is the passive one in m, its chord average and maximum: by default at ``rest``.
         """
+        outputs = plant.observe(rest)
         if camber is None:
-            outputs = plant.observe(rest)
-            camber = float(outputs.camber_mean), float(outputs.camber_max)
-        identity = cls(name, float(plant.dt), *camber, float(plant.v_squared_slack),
-                       float(v_squared_max), case, version())
+            camber = outputs.camber_mean, outputs.camber_max
+        units = units_of(outputs)
+        identity = cls(
+            name, float(plant.dt), *(None if each is None else float(each) for each in camber),
+            float(plant.v_squared_slack), float(v_squared_max), case, version(),
+            None if units == schema(Outputs).units else units)
         return identity.checked()
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI units, by name, of what responds to V^2 and may be identified."""
+        return schema(Outputs).units if self.outputs is None else self.outputs
+
+    def passive(self, output: str) -> float:
+        """Return the passive camber in m by name; raise `Absent` if the plant does not have it."""
+        value = getattr(self, output)
+        if value is None:
+            raise Absent(f'the plant ({self.plant}) has no output {output}: it has '
+                         f'{", ".join(self.units)}')
+        return value
 
     def checked(self) -> 'Identity':
         """Return self; raise `BadInput` unless every number is positive and finite."""
         for name in ('dt', 'camber_mean', 'camber_max', 'v_squared_slack', 'v_squared_max'):
             value = getattr(self, name)
+            if value is None and name.startswith('camber'):
+                continue
             if not (isinstance(value, float) and math.isfinite(value) and value > 0.0):
                 raise BadInput(f'identity: {name} = {value!r} is not a positive number')
         return self
 
     def to_yaml(self) -> str:
         """Return YAML from which `from_yaml` rebuilds the identity exactly."""
-        return yaml.safe_dump(dataclasses.asdict(self), sort_keys=False)
+        known = dataclasses.asdict(self)
+        if self.outputs is None:            # as version 0.1 wrote it
+            del known['outputs']
+        return yaml.safe_dump(known, sort_keys=False)
 
     @classmethod
     def from_yaml(cls, text: str) -> 'Identity':

@@ -8,7 +8,8 @@ from time import perf_counter
 from typing import Any
 
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.plant import SCALARS, Outputs, Plant
+from dewing_sim.plant import Outputs, Plant
+from dewing_sim.quantities import schema
 
 
 def nanoseconds(time: float) -> int:
@@ -69,8 +70,8 @@ class LockStep:
 
     def _observe(self, state: Any) -> Outputs:
         outputs = self.plant.observe(state)
-        for name in SCALARS:
-            value = getattr(outputs, name)
+        known = schema(type(outputs))
+        for name, value in known.given(outputs, known.scalars).items():
             if not math.isfinite(value):
                 raise Diverged(f'{name} = {value} after step {self.steps + 1}', self.state)
         return outputs

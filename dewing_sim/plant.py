@@ -2,35 +2,50 @@
 # SPDX-License-Identifier: Apache-2.0
 """What identification, control and the nodes know of a plant, whatever solves its equations."""
 
-from dataclasses import dataclass, field
-from typing import Any, Callable, Iterator, NamedTuple, Protocol
+import functools
+from collections import namedtuple
+from dataclasses import dataclass
+from typing import Any, Callable, Iterator, Protocol
 
 import numpy as np
 
+from dewing_sim.quantities import Absent, output, schema
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, kw_only=True)
 class Outputs:
     """Observable quantities at one instant; SI units, loads per unit span.
 
     ``x, y`` are the membrane nodes in the wing frame (x from the leading edge along the chord,
     y towards the suction side), ``pressure_jump`` the pressure below minus above at these nodes;
-    all three have the same shape ``(nodes,)`` and are empty for plants without a membrane.
+    all three have the same shape ``(nodes,)``.
+
+    An output that a plant does not have is None. It is never published and never recorded: the
+    measurement has no such name, a `History` no such column, and to ask either for it raises
+    `quantities.Absent`, a `BadInput`. No number stands for it, neither zero nor NaN. A plant has
+    the same outputs at every instant.
+
+    A plant from outside adds an output by a subclass, a frozen dataclass too, whose new fields
+    are declared with `quantities.output`.
     """
 
-    time: float
-    v_squared: float                    # V^2 held during the step that led here
-    cl: float                           # lift coefficient
-    cd: float                           # drag coefficient
-    cm: float                           # pitching moment about c/4, nose up
-    camber_mean: float                  # m, chord average of y
-    camber_max: float                   # m
-    camber_max_position: float          # x/c of the largest camber
-    tension: float                      # N/m, chord average
-    electric_field: float = 0.0         # V/m, the largest V / h along the chord
-    coupling_iterations: int = 0
-    x: np.ndarray = field(default_factory=lambda: np.empty(0))
-    y: np.ndarray = field(default_factory=lambda: np.empty(0))
-    pressure_jump: np.ndarray = field(default_factory=lambda: np.empty(0))
+    time: float = output('s', 'time since the rest state', required=True)
+    camber_mean: float | None = output('m', 'chord average of y', measured=True, topic='camber')
+    camber_max: float | None = output('m', 'largest camber', measured=True)
+    cl: float | None = output('-', 'lift coefficient', measured=True, topic='cl')
+    cd: float | None = output('-', 'drag coefficient', measured=True)
+    v_squared: float = output('V^2', 'V^2 held during the step that led here', measured=True,
+                              topic='v_squared', required=True)
+    cm: float | None = output('-', 'pitching moment coefficient about c/4, nose up')
+    camber_max_position: float | None = output('-', 'x/c of the largest camber')
+    tension: float | None = output('N/m', 'chord average of the tension')
+    electric_field: float | None = output('V/m', 'largest true field V/h along the chord')
+    capacitance: float | None = output('F/m', 'capacitance of the electrodes, per unit span')
+    coupling_iterations: int | None = output('-', 'coupling iterations of the step', kind=int)
+    x: np.ndarray | None = output('m', 'membrane nodes along the chord', kind=np.ndarray)
+    y: np.ndarray | None = output('m', 'membrane nodes across the chord', kind=np.ndarray)
+    pressure_jump: np.ndarray | None = output('Pa', 'pressure below minus above',
+                                              kind=np.ndarray)
 
     @property
     def voltage(self) -> float:
@@ -38,28 +53,57 @@ class Outputs:
         return float(np.sqrt(self.v_squared))
 
 
-SCALARS = ('time', 'v_squared', 'cl', 'cd', 'cm', 'camber_mean', 'camber_max',
-           'camber_max_position', 'tension', 'coupling_iterations')
+SCALARS = schema(Outputs).scalars
 
 
-class Measurement(NamedTuple):
-    """What a controller sees of a plant at one instant (SI); ``v_squared`` led here.
+def units_of(outputs: Outputs) -> dict[str, str]:
+    """Return the units of what a plant with ``outputs`` has that responds to V^2, by name."""
+    known = schema(type(outputs))
+    return {name: known.units[name] for name in known.given(outputs, known.scalars)
+            if name in known.units}
 
-    ``time`` is a whole number of nanoseconds, as in the stamp of a message.
+
+MEANING = """What a controller sees of a plant at one instant (SI); ``v_squared`` led here.
+
+    ``time`` is a whole number of nanoseconds, as in the stamp of a message. A quantity that the
+    plant does not have raises `quantities.Absent` when it is asked for.
     """
 
-    time: float
-    camber_mean: float
-    camber_max: float
-    cl: float
-    cd: float
-    v_squared: float
 
-    @classmethod
-    def of(cls, outputs: Outputs) -> 'Measurement':
-        """Return the measured part of ``outputs``."""
-        return cls(round(outputs.time * 1.0e9) * 1.0e-9,
-                   *(getattr(outputs, name) for name in cls._fields[1:]))
+class Seen:
+    """What all measurements have, whichever quantities they hold."""
+
+    __slots__ = ()
+    _fields: tuple[str, ...]
+
+    @staticmethod
+    def of(outputs: Outputs) -> 'Measurement':
+        """Return the measured part of ``outputs``, without what the plant does not have."""
+        known = schema(type(outputs))
+        values = known.given(outputs, known.measured)
+        return measurement_type(tuple(values))(round(outputs.time * 1.0e9) * 1.0e-9,
+                                               *values.values())
+
+    def __getattr__(self, name: str) -> Any:
+        raise Absent(f'measurement without {name}; it has {", ".join(self._fields[1:])}')
+
+    def __reduce__(self) -> tuple:
+        return _again, (self._fields[1:], *self)
+
+
+@functools.lru_cache(maxsize=64)
+def measurement_type(names: tuple[str, ...]) -> type:
+    """Return the class of measurements of ``names``; raise ValueError for unusable names."""
+    fields = namedtuple('Measurement', ('time', *names))
+    return type('Measurement', (Seen, fields), {
+        '__slots__': (), '__module__': __name__, '__doc__': MEANING})
+
+
+def _again(names: tuple[str, ...], *values: float) -> 'Measurement':
+    return measurement_type(names)(*values)
+
+
+Measurement = measurement_type(schema(Outputs).measured)
 
 
 class Plant(Protocol):

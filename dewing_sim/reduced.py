@@ -19,7 +19,8 @@ import numpy as np
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.model import Model
-from dewing_sim.plant import SCALARS, Outputs
+from dewing_sim.plant import Outputs
+from dewing_sim.quantities import extended, schema
 
 
 class State(NamedTuple):
@@ -34,8 +35,9 @@ class State(NamedTuple):
 class Reduced:
     """The plant of ``model``, at rest at ``rest_v_squared``, by default at V0^2.
 
-    The outputs of the model are scalar fields of `Outputs`; those that it lacks are zero. Raises
-    `BadInput` for a model with other outputs or with a feed-through.
+    The outputs of the model are numbers among the `Outputs`, or others whose unit it says: these
+    are measured. The plant does not have what the model lacks. Raises `BadInput` for an unknown
+    output without a unit or for a model with a feed-through.
     """
 
     model: Model
@@ -45,9 +47,11 @@ class Reduced:
 
     def __post_init__(self):
         """Check what a model may have and a plant may not."""
-        for name in self.model.output_names:
-            if name not in SCALARS or name in ('time', 'v_squared'):
-                raise BadInput(f'reduced model: {name!r} is not an output of a plant')
+        known = schema(Outputs)
+        for name, unit in zip(self.model.output_names, self.model.units):
+            if name not in known.units and (unit in ('', 'SI') or name in known.names):
+                raise BadInput(f'reduced model: {name!r} is not an output of a plant; '
+                               'a model may have others if it says their units')
         if np.any(self.model.d):
             raise BadInput('reduced model: D is not zero; V^2 cannot act at once on a membrane')
         rows = (len(self.model.output_names),)
@@ -70,6 +74,11 @@ class Reduced:
     def v_squared_max(self) -> float:
         """V^2 beyond which the model says nothing."""
         return self.model.v_squared_max
+
+    @cached_property
+    def _outputs(self) -> type[Outputs]:
+        """What is observed: `Outputs` with what else the model has."""
+        return extended(Outputs, tuple(zip(self.model.output_names, self.model.units)))
 
     @cached_property
     def gain(self) -> np.ndarray:
@@ -108,10 +117,8 @@ class Reduced:
         if self.disturbance is not None:
             phase = 2.0 * math.pi * self.disturbance_frequency * time
             y = y + self.disturbance * (1.0 - math.cos(phase))
-        values = dict.fromkeys(SCALARS, 0.0)
-        values.update(zip(self.model.output_names, y.tolist()))
-        values.update(time=time, v_squared=state.v_squared, coupling_iterations=0)
-        return Outputs(**values)
+        return self._outputs(time=time, v_squared=state.v_squared,
+                             **dict(zip(self.model.output_names, y.tolist())))
 
     def save(self, path: str | Path, state: State) -> None:
         """Write ``state`` to the npz file ``path``."""

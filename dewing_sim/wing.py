@@ -28,6 +28,7 @@ from dewing_sim.scales import Scales
 from dewing_sim.state import State
 from dewing_sim.structure import elements
 from dewing_sim.structure.dynamics.step import Operator
+from dewing_sim.structure.material.elastomer import VACUUM_PERMITTIVITY
 
 
 class Wing:
@@ -53,6 +54,7 @@ class Wing:
         self._centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
         self._impedance = interface.nodal_impedance(self.fluid, self.membrane)
         self._operator = self.operator(damping=0.0)
+        self._permittivity = VACUUM_PERMITTIVITY * case.membrane.relative_permittivity
 
     def rest(self, progress=None) -> State:
         """Return the trimmed state at time 0 under the voltage of the case, cached on disk.
@@ -116,6 +118,7 @@ class Wing:
             camber_max=chord * camber, camber_max_position=place,
             tension=self.scales.tension * float(sheet.tension.sum()) / sheet.tension.size,
             electric_field=math.sqrt(state.v_squared) / (chord * float(sheet.thickness.min())),
+            capacitance=self._permittivity * electrode_ratio(x, y, sheet.thickness),
             coupling_iterations=state.iterations,
             x=chord * x, y=chord * y,
             pressure_jump=self.scales.pressure * np.interp(x, self._centres, loads.jump))
@@ -137,6 +140,15 @@ class Wing:
         """y_ref = q c^2 / (8 T0) in m: the deflection of a string under a uniform pressure q."""
         tension = self.membrane.rest_tension(0.0) * self.scales.tension
         return self.case.flow.dynamic_pressure * self.scales.length**2 / (8.0 * tension)
+
+
+def electrode_ratio(x: np.ndarray, y: np.ndarray, thickness: np.ndarray) -> float:
+    """Return the integral of ds / h over the arc s of nodes ``x, y`` (n+1,), h (n,) between them.
+
+    Times the permittivity that is the capacitance per unit span: the field V/h crosses the
+    deformed sheet, whose electrodes lie along the arc.
+    """
+    return float(np.hypot(x[1:] - x[:-1], y[1:] - y[:-1]) @ (1.0 / thickness))
 
 
 def peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:

@@ -46,7 +46,8 @@ class Campaign:
         """Record the outputs ``values`` at ``stamp`` (ns) and return V^2 to hold, or None.
 
         None answers what is not the measurement awaited, nor the last one again.  Raises
-        `BadInput` if a measurement was lost or the stamp is no multiple of dt.
+        `BadInput` if a measurement was lost, if it does not have the outputs of the plan or if
+        the stamp is no multiple of dt.
         """
         number = round(stamp * 1.0e-9 / self.plan.dt)
         if stamp != nanoseconds(number * self.plan.dt):
@@ -55,11 +56,18 @@ class Campaign:
             raise BadInput(f'measurement {self._next} of run {self.run!r} was lost: '
                            f'{number} came after {self._next - 1}')
         if number == self._next and not self.run_complete:
-            self.outputs[self.run][:, number] = [values[name] for name in self.plan.names]
+            self.outputs[self.run][:, number] = self._observed(values)
             self._next += 1
         elif number != self._next - 1:
             return None
         return float(self.plan.inputs[self.run][number])
+
+    def _observed(self, values: Mapping[str, float]) -> list[float]:
+        try:
+            return [values[name] for name in self.plan.names]
+        except KeyError:
+            missing = [name for name in self.plan.names if name not in values]
+            raise BadInput(f'the simulator does not publish {", ".join(missing)}') from None
 
     def proceed(self) -> None:
         """Go on to the next run; ``run`` is None after the last."""

@@ -17,30 +17,40 @@ from dewing_sim.errors import BadInput, Slack
 from dewing_sim.files import new_file
 from dewing_sim.identity import Identity
 from dewing_sim.plant import Outputs, Plant
+from dewing_sim.quantities import Absent
 
-UNITS = {'camber_mean': 'm', 'camber_max': 'm', 'cl': '-', 'cd': '-', 'cm': '-',
-         'tension': 'N/m'}
 STANDARD = ('camber_mean', 'camber_max', 'cl')
 MODAL = STANDARD + tuple(f'mode_{n}' for n in range(1, 6))
 
 
-def unit(name: str) -> str:
-    """Return the SI unit of an output; raise `BadInput` if there is no such output."""
+def unit(name: str, identity: Identity) -> str:
+    """Return the SI unit of an output; raise `BadInput` if the plant has no such output."""
     if name.startswith('mode_') and name[5:].isdigit() and int(name[5:]) > 0:
         return 'm'
-    if name not in UNITS:
-        raise BadInput(f"output {name!r} is unknown; known: {', '.join(UNITS)} and mode_1, ...")
-    return UNITS[name]
+    units = identity.units
+    if name not in units:
+        raise BadInput(f"output {name!r} is unknown; known: {', '.join(units)} and mode_1, ...")
+    return units[name]
 
 
 def observe(outputs: Outputs, names: Sequence[str]) -> list[float]:
-    """Return the named quantities; mode_n is 2/c int_0^c y sin(n pi x / c) dx in m."""
+    """Return the named quantities; mode_n is 2/c int_0^c y sin(n pi x / c) dx in m.
+
+    Raises `Absent`, a `BadInput`, for what the plant does not have.
+    """
     return [_mode(outputs, int(name[5:])) if name.startswith('mode_')
-            else float(getattr(outputs, name)) for name in names]
+            else _number(outputs, name) for name in names]
+
+
+def _number(outputs: Outputs, name: str) -> float:
+    value = getattr(outputs, name)
+    if value is None:
+        raise Absent(f'output {name!r} cannot be identified: the plant does not have it')
+    return float(value)
 
 
 def _mode(outputs: Outputs, number: int) -> float:
-    if outputs.x.size < 2:
+    if outputs.x is None or outputs.x.size < 2:
         raise BadInput(f'mode_{number} needs a membrane, this plant has none')
     span = outputs.x[-1] - outputs.x[0]
     shape = np.sin(number * np.pi * (outputs.x - outputs.x[0]) / span)

@@ -118,7 +118,8 @@ def _model(realisation: Matrices, factors: era.HankelFactors, record: Record,
         realisation.a, realisation.b, realisation.c, np.zeros_like(realisation.d), record.dt,
         record.names, record.baseline.mean(axis=1), identity.v_squared_slack,
         v_squared_max=identity.v_squared_max, operating_v_squared=record.operating_v_squared,
-        units=tuple(map(unit, record.names)), singular_values=factors.singular_values,
+        units=tuple(unit(name, identity) for name in record.names),
+        singular_values=factors.singular_values,
         case_yaml=yaml.safe_dump({'/**': {'ros__parameters': identity.case}}))
 
 

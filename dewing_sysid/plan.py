@@ -81,7 +81,7 @@ def make(settings: Settings, identity: Identity, names: Sequence[str] | None = N
         _check_voltage(name, v_squared, identity)
     names = names or (MODAL if settings.realisation.outputs == 'modal' else STANDARD)
     for name in names:
-        unit(name)
+        unit(name, identity)
     return Plan(dt, rest, tuple(names), inputs)
 
 

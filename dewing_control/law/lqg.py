@@ -79,7 +79,7 @@ class Lqg(Law):
         observer = Observer.of(model, settings.disturbance_model, settings.estimator)
         return cls(observer, regulator(model, settings.lqg.control_weight)[0],
                    reference.output, reference.target, reference.rate,
-                   getattr(identity, reference.output), identity.v_squared_slack,
+                   identity.passive(reference.output), identity.v_squared_slack,
                    min(command.voltage_limit**2, identity.v_squared_max))
 
     def start(self, v_squared: float = 0.0) -> Memory:

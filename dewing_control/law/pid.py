@@ -75,7 +75,7 @@ class Pid(Law):
         """Return the controller that ``settings`` describe for the plant of ``identity``."""
         reference, command = settings.reference, settings.command
         return cls(settings.pid, reference.output, reference.target, reference.rate,
-                   getattr(identity, reference.output), identity.v_squared_slack,
+                   identity.passive(reference.output), identity.v_squared_slack,
                    min(command.voltage_limit**2, identity.v_squared_max),
                    command.period_steps * identity.dt)
 

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The electrical energy of a membrane wing, per metre of span.
 
-The electrodes are a capacitor of C = eps eps_r int ds/h over the deformed arc s, with the deformed
-thickness h = H/(lambda lambda_z) of an incompressible membrane. While V jumps C stays, while C
-changes V is held, so a step of the simulation takes from an ideal source
+The electrodes are a capacitor of C = eps eps_r int ds/h, an output of the wing: s is the deformed
+arc, h the thickness that balances the Maxwell stress. While V jumps C stays, while C changes V is
+held, so a step of the simulation takes from an ideal source
 
     dE = C (V^2 - V_before^2)/2 + V^2 (C_after - C),
 
@@ -15,18 +15,6 @@ the source takes back what is negative; without, that is lost.
 from dataclasses import dataclass
 
 import numpy as np
-
-from dewing_sim import parameters
-
-VACUUM_PERMITTIVITY = 8.8541878128e-12      # F/m
-
-
-def capacitance(x: np.ndarray, y: np.ndarray, membrane: parameters.Membrane) -> float:
-    """Return C in F/m of the shape ``x, y`` (m, nodes equally spaced before deformation)."""
-    arc = np.hypot(np.diff(x), np.diff(y))
-    relaxed = membrane.chord / (arc.size * membrane.prestretch)
-    thickness = membrane.initial_thickness * relaxed / (arc * membrane.prestretch_lateral)
-    return float(VACUUM_PERMITTIVITY * membrane.relative_permittivity * np.sum(arc / thickness))
 
 
 @dataclass(frozen=True)

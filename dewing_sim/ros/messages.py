@@ -29,9 +29,10 @@ from visualization_msgs.msg import Marker
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Flow
-from dewing_sim.plant import Measurement, Outputs
+from dewing_sim.plant import Measurement, Outputs, measurement_type
+from dewing_sim.quantities import schema
 
-MEASURED = list(Measurement._fields[1:])
+MEASURED = list(schema(Outputs).measured)      # by the wing
 COMMANDED = ['v_squared']
 MEMBRANE_FIELDS = ('x', 'y', 'z', 'dp', 'tension')
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
@@ -49,21 +50,30 @@ def from_stamp(stamp: Time) -> int:
 
 
 def measurement(outputs: Outputs) -> JointState:
-    """Return the measured quantities (SI) by name, stamped with simulated time."""
+    """Return the measured quantities (SI) by name, stamped with simulated time.
+
+    What the plant does not have is not in it.
+    """
     seen = Measurement.of(outputs)
-    message = JointState(name=MEASURED, position=array('d', seen[1:]))
+    message = JointState(name=list(seen._fields[1:]), position=array('d', seen[1:]))
     message.header.stamp = to_stamp(round(outputs.time * 1.0e9))
     return message
 
 
 def to_measurement(message: JointState) -> Measurement:
-    """Return the quantities of a message; raise `BadInput` if one is missing."""
-    values = dict(zip(message.name, message.position))
+    """Return the quantities of a message; raise `BadInput` for names that are unusable.
+
+    A quantity that the message does not have is missed when a controller asks for it.
+    """
+    names = tuple(message.name)
+    if len(names) != len(message.position):
+        raise BadInput(f'measurement with {len(names)} names and {len(message.position)} '
+                       f'positions')
     try:
-        return Measurement(from_stamp(message.header.stamp) * 1.0e-9,
-                           *(values[name] for name in MEASURED))
-    except KeyError as error:
-        raise BadInput(f'measurement without {error.args[0]}') from None
+        return measurement_type(names)(from_stamp(message.header.stamp) * 1.0e-9,
+                                       *message.position)
+    except ValueError as error:
+        raise BadInput(f'measurement with unusable names: {error}') from None
 
 
 def command(v_squared: float, stamp: Time) -> JointState:

@@ -75,7 +75,8 @@ class SimulatorNode(Node):
     def _connect(self):
         self._measurement = self.create_publisher(JointState, 'measurement', qos.LOOP)
         self._identity = self.create_publisher(String, 'case', qos.LATCHED)
-        self._telemetry = Telemetry(self, self.case, self.run, self.plant.dt)
+        self._telemetry = Telemetry(self, self.case, self.run, self.plant.dt,
+                                    self.lockstep.outputs)
         self._command = self.create_subscription(
             JointState, 'command', self._on_command, qos.LATEST)
         Services(self)

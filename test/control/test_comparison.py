@@ -15,13 +15,12 @@ from dewing_control.figures.comparison import draw
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial import comparison, scenarios, trial
 from dewing_sim import parameters, reduced
-from dewing_sim.errors import RunFailed
+from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import loss_of_tension
 from dewing_sim.parameters import Disturbance
 from dewing_sim.plant import Outputs
 
 pytest.importorskip('osqp')
-MEMBRANE = parameters.load('paper').membrane
 COARSE = {'numerics.trim_time': 0.05}
 
 
@@ -39,14 +38,13 @@ class Shape:
         return state + 1
 
     def observe(self, state):
-        x = np.linspace(0.0, 0.03, 9)
         camber = 2.0e-5 * (1.0 + 0.1 * math.sin(2.0 * math.pi * 10.0 * state * self.dt))
-        return Outputs(state * self.dt, 4.0e4 if state else 0.0, 0.4, 0.06, 0.0, camber, camber,
-                       0.4, 1.2, x=x, y=np.zeros(9))
+        return Outputs(time=state * self.dt, v_squared=4.0e4 if state else 0.0, cl=0.4, cd=0.06,
+                       camber_mean=camber, camber_max=camber, capacitance=2.1e-8)
 
 
 def test_figures_of_a_known_run():
-    run = trial.run(Shape(), 0, None, 400, MEMBRANE)
+    run = trial.run(Shape(), 0, None, 400)
     figures = trial.figures(run, 1.05, 1.0e6, 0.2)
     assert figures['camber_mean'] == pytest.approx(1.0, abs=1.0e-9)
     assert figures['camber_amplitude'] == pytest.approx(0.1, rel=1.0e-3)
@@ -56,12 +54,24 @@ def test_figures_of_a_known_run():
 
 
 def test_failing_plant_keeps_what_was_computed():
-    run = trial.run(Shape(failing=50), 0, None, 400, MEMBRANE)
+    run = trial.run(Shape(failing=50), 0, None, 400)
     assert run.camber.size == 49 and run.failure == 'slack'
     figures = trial.figures(run, 1.0, 1.0e6, 0.2)
     assert all(math.isfinite(value) for value in figures.values() if not isinstance(value, str))
     with pytest.raises(RunFailed, match='the first step failed: slack'):
-        trial.run(Shape(failing=1), 0, None, 10, MEMBRANE)
+        trial.run(Shape(failing=1), 0, None, 10)
+
+
+def test_a_plant_without_lift_and_membrane_has_no_such_figures():
+    """What is absent is left out: no zero and no NaN stands for it."""
+    bare = Shape()
+    bare.observe = lambda state: Outputs(time=state * bare.dt, v_squared=0.0, camber_mean=2.0e-5)
+    figures = trial.figures(trial.run(bare, 0, None, 40, noise=0.01), 1.0, 1.0e6, 0.02)
+    assert figures['camber_mean'] == 1.0
+    assert not {'cl_mean', 'cd_mean', 'energy_j', 'power_w'} & figures.keys()
+    bare.observe = lambda state: Outputs(time=state * bare.dt, v_squared=0.0)
+    with pytest.raises(BadInput, match='mean camber: the plant does not have it'):
+        trial.run(bare, 0, None, 40)
 
 
 def test_noise_reaches_the_controller_only_and_repeats():
@@ -69,7 +79,7 @@ def test_noise_reaches_the_controller_only_and_repeats():
     watcher = SimpleNamespace(start=lambda v_squared: None,
                               step=lambda memory, measured: (seen.append(measured), 0.0))
     for _ in range(2):
-        run = trial.run(Shape(), 0, watcher, 100, MEMBRANE, noise=0.01)
+        run = trial.run(Shape(), 0, watcher, 100, noise=0.01)
     cambers = np.array([measured.camber_mean for measured in seen]).reshape(2, 100)
     assert np.array_equal(cambers[0], cambers[1])
     clean = 2.0e-5 * np.concatenate([[1.0], run.camber[:-1]])
@@ -146,7 +156,7 @@ def test_unknown_names_are_bad_input(capsys):
 
 
 def test_figure_has_a_row_for_each_scenario():
-    run = trial.run(Shape(), 0, None, 50, MEMBRANE)
+    run = trial.run(Shape(), 0, None, 50)
     figure = draw({'fig5': {'open_loop': ({}, run)}, 'step': {'open_loop': ({}, run)}})
     assert len(figure.axes) == 4
     drawn = figure.axes[0].lines[0].get_ydata()

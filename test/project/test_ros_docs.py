@@ -17,6 +17,8 @@ from ros_processes import PATIENCE
 
 from dewing_control.node import ControllerNode
 from dewing_sim import parameters, reduced
+from dewing_sim.plant import Outputs
+from dewing_sim.quantities import schema
 from dewing_sim.ros import harness, messages
 from dewing_sim.ros.node import SimulatorNode
 from dewing_sim.ros.telemetry import Telemetry
@@ -48,7 +50,8 @@ def nodes(tmp_path):
         controller = session.add(ControllerNode)
         wing = session.add(lambda _, **options: Node('wing', namespace='dewing', **options))
         run = parameters.replace(simulator.run, {'plant': 'wing'})
-        Telemetry(wing, parameters.load('paper'), run, 1.0e-4)
+        Telemetry(wing, parameters.load('paper'), run, 1.0e-4, Outputs(**{
+            each.name: 0.0 for each in schema(Outputs).quantities}))
         yield session, simulator, controller, wing
 
 

@@ -3,6 +3,7 @@
 """Histories survive a file bit for bit, refuse NaN and never overwrite by accident."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.plant import SCALARS, Outputs
+from dewing_sim.quantities import schema
 from dewing_sim.records.history import History, Recorder, record
 
 
@@ -26,8 +28,9 @@ def run(steps: int = 7, every: int = 3) -> History:
 
 
 def same(one: History, other: History) -> bool:
-    return all(np.array_equal(getattr(one, field.name), getattr(other, field.name))
-               for field in dataclasses.fields(History))
+    return one.columns.keys() == other.columns.keys() and one.shapes.keys() == other.shapes.keys(
+        ) and all(np.array_equal(getattr(one, name), getattr(other, name)) for name in (
+            *one.columns, 'shape_time', *one.shapes, 'case', 'units'))
 
 
 def test_scalars_are_kept_at_each_step_and_shapes_at_every_third():
@@ -116,3 +119,42 @@ def test_a_missing_file_is_named(tmp_path):
 def test_the_late_part_of_a_run():
     late = run().since(0.25)
     assert np.allclose(late.time, [0.3, 0.4, 0.5, 0.6]) and late.y.shape == (2, 5)
+
+
+def test_the_columns_are_those_of_the_schema_with_their_units():
+    history, known = run(), schema(Outputs)
+    assert tuple(history.columns) == known.columns and tuple(history.shapes) == known.shapes
+    assert history.units == {each.name: each.unit for each in known.quantities}
+    assert history.electric_field.shape == history.capacitance.shape == (7,)
+
+
+def test_what_a_plant_does_not_have_is_absent_before_and_after_the_file(tmp_path):
+    """Neither zeros nor NaN: there is no such column, and asking for it is an error."""
+    history = record(Outputs(time=0.1 * k, v_squared=0.0, cl=0.4) for k in range(3))
+    history.save(tmp_path / 'run.npz')
+    for found in (history, History.load(tmp_path / 'run.npz'), history.since(0.1)):
+        assert [*found.columns] == ['time', 'cl', 'v_squared'] and not found.shapes
+        assert 'cl' in found and 'camber_mean' not in found and not hasattr(found, 'y')
+        with pytest.raises(BadInput, match='does not hold camber_mean; it has time, cl, v_squ'):
+            assert found.camber_mean
+
+
+def test_outputs_that_come_and_go_are_refused():
+    recorder = Recorder()
+    recorder.add(Outputs(time=0.0, v_squared=0.0, cl=0.4))
+    with pytest.raises(BadInput, match='does not have cl at every instant'):
+        recorder.add(Outputs(time=0.1, v_squared=0.0))
+    assert recorder.history().cl.tolist() == [0.4]
+
+
+def test_a_file_of_version_0_1_loads_and_says_by_absence_what_it_lacks():
+    """Written by 0.1: six steps at 300 V, eight elements, shapes of steps 1 and 4."""
+    old = History.load(Path(__file__).parents[2] / 'reference' / 'history_0.1.npz')
+    assert len(old) == 6 and np.allclose(old.voltage, 300.0) and old.y.shape == (2, 9)
+    assert np.all(old.camber_max > old.camber_mean) and old.units['tension'] == 'N/m'
+    assert parameters.from_yaml(old.case).membrane.elements == 8
+    assert old.coupling_iterations.dtype.kind == 'i'
+    for name in ('electric_field', 'capacitance'):
+        assert name not in old
+        with pytest.raises(BadInput, match=f'does not hold {name}'):
+            getattr(old, name)

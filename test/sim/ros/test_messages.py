@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages carry outputs, commands and parameters without loss."""
 
+import copy
 import dataclasses
+import pickle
 
 import numpy as np
 import pytest
@@ -29,8 +31,28 @@ def test_measurement_is_exact_and_stamped_with_simulated_time():
 def test_measurement_without_a_quantity_is_refused():
     message = messages.measurement(OUTPUTS)
     message.name, message.position = message.name[1:], message.position[1:]
-    with pytest.raises(BadInput, match='measurement without camber_mean'):
-        messages.to_measurement(message)
+    measured = messages.to_measurement(message)
+    assert measured.cl == 0.39 and not hasattr(measured, 'camber_mean')
+    with pytest.raises(BadInput, match='measurement without camber_mean; it has camber_max, cl'):
+        assert measured.camber_mean
+
+
+@pytest.mark.parametrize('names', [['cl', 'cl'], ['cl', 'time'], ['cl', 'joint-2'], ['cl']])
+def test_measurement_with_unusable_names_is_refused(names):
+    with pytest.raises(BadInput, match='unusable names|1 names and 2 positions'):
+        messages.to_measurement(messages.JointState(name=names, position=[0.4, 0.5]))
+
+
+def test_what_a_plant_does_not_have_is_not_in_the_message():
+    message = messages.measurement(Outputs(time=0.0, v_squared=4.0, camber_mean=2.0e-5))
+    assert list(message.name) == ['camber_mean', 'v_squared']
+    assert messages.to_measurement(message) == (0.0, 2.0e-5, 4.0)
+
+
+def test_a_measurement_survives_copies_and_processes():
+    for measured in (Measurement.of(OUTPUTS), Measurement.of(Outputs(time=0.1, v_squared=4.0))):
+        again = pickle.loads(pickle.dumps(measured))
+        assert again == measured and type(again) is type(copy.deepcopy(measured)) is type(measured)
 
 
 def test_command_is_exact_and_keeps_the_stamp():
