@@ -102,4 +102,4 @@ def offline(steps, changes=None):
     law = controller(parameters.load('controller', ControllerSettings, changes), identity)
     rows = [Measurement.of(plant.observe(plant.rest()))]
     rows += [Measurement.of(o) for _, o in closed_loop(plant, plant.rest(), law, steps)]
-    return dict(zip(Measurement._fields, np.array(rows).T))
+    return dict(zip(rows[0]._fields, np.array(rows).T))
