@@ -68,6 +68,13 @@ class Identity:
         """SI units, by name, of what responds to V^2 and may be identified."""
         return schema(Outputs).units if self.outputs is None else self.outputs
 
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names that a measurement may hold: those of `Outputs` that do, and any from outside."""
+        known = schema(Outputs)
+        return tuple(name for name in self.units
+                     if name in known.measured or name not in known.units)
+
     def passive(self, output: str) -> float:
         """Return the passive camber in m by name; raise `Absent` if the plant does not have it."""
         value = getattr(self, output)

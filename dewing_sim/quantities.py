@@ -97,12 +97,19 @@ def schema(kind: type) -> Schema:
 
 @functools.lru_cache(maxsize=64)
 def extended(kind: type, units: tuple[tuple[str, str], ...]) -> type:
-    """Return ``kind`` with a measured number for each (name, unit) that it does not have."""
-    known = {field.name for field in dataclasses.fields(kind)}
+    """Return ``kind`` with a measured number for each (name, unit) that it does not have.
+
+    Raises `BadInput` for a name that no field can have.
+    """
     more = [(name, float | None, output(unit, name, measured=True))
-            for name, unit in units if name not in known]
-    return dataclasses.make_dataclass(
-        kind.__name__, more, bases=(kind,), frozen=True, kw_only=True) if more else kind
+            for name, unit in units if name not in schema(kind).names]
+    try:
+        made = dataclasses.make_dataclass(
+            kind.__name__, more, bases=(kind,), frozen=True, kw_only=True) if more else kind
+    except TypeError as error:
+        raise BadInput(f'unusable name of an output: {error}') from None
+    schema(made)
+    return made
 
 
 def _quantity(kind: type, field: dataclasses.Field) -> Quantity:

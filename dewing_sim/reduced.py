@@ -54,6 +54,11 @@ class Reduced:
                                'a model may have others if it says their units')
         if np.any(self.model.d):
             raise BadInput('reduced model: D is not zero; V^2 cannot act at once on a membrane')
+        try:
+            object.__setattr__(self, '_outputs', extended(
+                Outputs, tuple(zip(self.model.output_names, self.model.units))))
+        except BadInput as error:
+            raise BadInput(f'reduced model: {error}') from None
         rows = (len(self.model.output_names),)
         if self.disturbance is not None and not (
                 self.disturbance.shape == rows and np.all(np.isfinite(self.disturbance))):
@@ -74,11 +79,6 @@ class Reduced:
     def v_squared_max(self) -> float:
         """V^2 beyond which the model says nothing."""
         return self.model.v_squared_max
-
-    @cached_property
-    def _outputs(self) -> type[Outputs]:
-        """What is observed: `Outputs` with what else the model has."""
-        return extended(Outputs, tuple(zip(self.model.output_names, self.model.units)))
 
     @cached_property
     def gain(self) -> np.ndarray:

@@ -21,7 +21,7 @@ from dewing_control.model.design import Design
 from dewing_sim import parameters, plugins
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
-from dewing_sim.plant import Measurement
+from dewing_sim.plant import measurement_type
 
 LAWS: dict[str, type[Law]] = {law.kind: law for law in (Pid, Periodic, Lqg, Mpc)}
 TRIED = 3                   # steps in which any gain that is not finite has reached V^2
@@ -99,8 +99,10 @@ def _model(settings: Settings, identity: Identity) -> Design:
 
 def _try(made: Law, settings: Settings, identity: Identity) -> None:
     """Let the law answer the plant at rest; raise `BadInput` if it cannot."""
-    rest = Measurement(*(0.0 for _ in Measurement._fields))._replace(
-        camber_mean=identity.camber_mean, camber_max=identity.camber_max)
+    values = dict.fromkeys((*identity.measured, 'v_squared'), 0.0) | {
+        name: getattr(identity, name) for name in ('camber_mean', 'camber_max')
+        if name in identity.measured}
+    rest = measurement_type(tuple(values))(0.0, *values.values())
     memory = made.start(0.0)
     for step in range(TRIED):
         time = step * settings.command.period_steps * identity.dt

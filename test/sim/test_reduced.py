@@ -12,7 +12,7 @@ from dewing_sim import reduced
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.model import Model
 from dewing_sim.parameters import config_file
-from dewing_sim.plant import rollout
+from dewing_sim.plant import Measurement, rollout, units_of
 from dewing_sim.reduced import Reduced
 
 
@@ -88,6 +88,7 @@ def test_divergence_returns_the_last_good_state():
 
 @pytest.mark.parametrize('change, message', [
     (dict(output_names=('lift',)), "'lift' is not an output"),
+    (dict(output_names=('not a name',), units=('m',)), 'unusable name of an output'),
     (dict(d=np.ones((1, 1))), 'D is not zero'),
 ])
 def test_models_that_are_no_plants_are_refused(change, message, tmp_path, monkeypatch):
@@ -98,6 +99,16 @@ def test_models_that_are_no_plants_are_refused(change, message, tmp_path, monkey
     model.save('model.npz')
     with pytest.raises(BadInput, match=f'model.npz: reduced model: .*{message}'):
         reduced.load('model.npz')
+
+
+def test_what_the_model_lacks_is_absent_and_what_it_has_beyond_is_measured():
+    """A model may have any output whose unit it says; no zero stands for the others."""
+    plant = Reduced(dataclasses.replace(fibonacci().model, output_names=('wake',),
+                                        units=('m/s',), operating_outputs=np.array([2.0])))
+    outputs = plant.observe(plant.trim(0.0))
+    assert outputs.wake == 2.0 and outputs.cl is None and outputs.tension is None
+    assert Measurement.of(outputs) == (0.0, 0.0, 2.0)
+    assert units_of(outputs) == {'wake': 'm/s'}
 
 
 def test_a_disturbance_of_another_shape_is_refused():
