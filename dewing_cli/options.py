@@ -8,8 +8,10 @@ from typing import Any
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
+from dewing_sim.fluid import engines
 from dewing_sim.inputs.disturbance import DISTURBANCES
 from dewing_sim.parameters import Case, Numerics
+from dewing_sim.plugins import is_plugin
 
 NUMERICS = {'engine': 'numerics.engine', 'grid': 'numerics.grid', 'dt': 'numerics.time_step'}
 
@@ -28,9 +30,9 @@ def add_case(parser: argparse.ArgumentParser) -> None:
 def add_numerics(parser: argparse.ArgumentParser, time: str) -> None:
     """Declare --engine, --grid, --dt and --duration, in units of ``time``."""
     group = parser.add_argument_group('numerics')
-    for name, help in (('engine', 'flow solver'), ('grid', 'flow grid preset')):
-        options = numerics_field(name).metadata['options']
-        group.add_argument(f'--{name}', metavar='NAME', help=f'{help}: {", ".join(options)}')
+    for name in ('engine', 'grid'):
+        group.add_argument(f'--{name}', metavar='NAME',
+                           help=parameters.describe(numerics_field(name)))
     group.add_argument('--dt', type=float, metavar=time.upper(), help=f'time step in {time}')
     group.add_argument('--duration', type=float, metavar=time.upper(),
                        help=f'simulated time in {time}')
@@ -52,9 +54,10 @@ def numerics_field(option: str) -> Any:
     return Numerics.__dataclass_fields__[name]
 
 
-def engine_names() -> tuple[str, ...]:
-    """Return the engines themselves, without ``auto``."""
-    return tuple(name for name in numerics_field('engine').metadata['options'] if name != 'auto')
+def check_engine(name: str, *more: str) -> None:
+    """Raise `BadInput` unless ``name`` is an engine, one from outside or one of ``more``."""
+    if not is_plugin(name):
+        one_of('--engine', name, dict.fromkeys((*engines.NAMES, *more)))
 
 
 def load_case(arguments: argparse.Namespace) -> Case:

@@ -16,6 +16,7 @@ from typing import Any, Mapping
 import yaml
 
 from dewing_sim.errors import BadInput
+from dewing_sim.fluid import engines
 from dewing_sim.schema import (
     Numbers,
     Section,
@@ -27,6 +28,7 @@ from dewing_sim.schema import (
     from_mapping,
     leaves,
     numbers,
+    outside_modules,
     real,
     replace,
     text,
@@ -36,8 +38,8 @@ from dewing_sim.schema import (
 __all__ = [
     'Actuation', 'Case', 'Disturbance', 'Flow', 'Gust', 'Membrane', 'Numerics', 'RigidMotion',
     'check', 'choice', 'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml',
-    'leaves', 'load', 'numbers', 'parse_assignment', 'real', 'replace', 'text', 'to_mapping',
-    'to_yaml',
+    'leaves', 'load', 'numbers', 'outside_modules', 'parse_assignment', 'real', 'replace', 'text',
+    'to_mapping', 'to_yaml',
 ]
 
 
@@ -91,9 +93,8 @@ class Numerics:
     """How the equations are solved."""
 
     engine: str = choice('flow solver; auto: conformal wherever it has been verified',
-                         'finite_volume', 'conformal', 'auto')
-    grid: str = choice(
-        'flow grid preset of the engine', 'fast', 'standard', 'fine', 'realtime', 'reference')
+                         *engines.NAMES, 'auto', open=True)
+    grid: str = choice('flow grid preset of the engine', *engines.GRIDS, of='engine')
     time_step: float = real('s', 'time step dt', 1.0e-8, 1.0e-1)
     coupling_tolerance: float = real(
         '-', 'relative change of the membrane shape between coupling passes', 1.0e-12, 1.0e-1)

@@ -8,6 +8,7 @@ range, and otherwise raises `BadInput` naming field, value, unit and range.
 
 import dataclasses
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from dewing_sim.errors import BadInput
@@ -35,6 +36,8 @@ def choice(meaning: str, *options: str, **more: Any) -> Any:
     """Declare a field that takes one of a few words.
 
     With ``open=True`` it takes a part from outside too, ``package.module:Name``; see `plugins`.
+    With ``of='other'`` it takes any word where the field ``other`` beside it names a part from
+    outside, which says itself which words it knows.
     """
     return _field(str, '', meaning, options=options, **more)
 
@@ -118,8 +121,12 @@ def describe(field: dataclasses.Field) -> str:
     return f"{meta['meaning']}{unit}, from {meta['low']:g} to {meta['high']:g}"
 
 
-def check(name: str, field: dataclasses.Field, value: Any) -> Any:
-    """Return ``value`` if ``field`` admits it; raise `BadInput` otherwise."""
+def check(name: str, field: dataclasses.Field, value: Any, beside: Mapping = MappingProxyType({}),
+          ) -> Any:
+    """Return ``value`` if ``field`` admits it; raise `BadInput` otherwise.
+
+    ``beside`` has the values of the other fields of its section.
+    """
     wanted = field.metadata['type']
     if wanted is Numbers:
         return _checked_numbers(name, field, value)
@@ -128,8 +135,8 @@ def check(name: str, field: dataclasses.Field, value: Any) -> Any:
         raise BadInput(f'{name} = {value!r} is not a {_TYPE_NAMES[wanted]}{hint}: '
                        f'{describe(field)}')
     if 'options' in field.metadata:
-        admissible = value in field.metadata['options'] or (
-            field.metadata.get('open', False) and is_plugin(value))
+        word = value if field.metadata.get('open') else beside.get(field.metadata.get('of'))
+        admissible = value in field.metadata['options'] or is_plugin(str(word))
     elif 'low' in field.metadata:
         admissible = field.metadata['low'] <= value <= field.metadata['high']
     else:
@@ -177,7 +184,7 @@ def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section
             value = mapping[key] if key in mapping else _default_section(path, field)
             values[key] = from_mapping(field.type, value, path)
         elif key in mapping:
-            values[key] = check(path, field, mapping[key])
+            values[key] = check(path, field, mapping[key], mapping)
         elif 'default' in field.metadata:
             values[key] = field.metadata['default']
         else:
@@ -198,6 +205,12 @@ def _default_section(path: str, field: dataclasses.Field) -> dict:
 
 def _missing_hint(field: dataclasses.Field) -> str:
     return f': {describe(field)}' if field.metadata else ' (a section)'
+
+
+def outside_modules(section: Any) -> tuple[str, ...]:
+    """Return the modules of all parts from outside that ``section`` names."""
+    return tuple(sorted({value.partition(':')[0] for _, value, field in leaves(section)
+                         if field.metadata.get('open') and is_plugin(value)}))
 
 
 def to_mapping(section: Any) -> dict:

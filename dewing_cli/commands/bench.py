@@ -15,6 +15,7 @@ from dewing_cli import options, results
 from dewing_cli.progress import Laps
 from dewing_sim import parameters
 from dewing_sim.files import check_free
+from dewing_sim.fluid import engines
 
 BLOCK = 20
 ARRAYS_READ, ARRAYS_WRITTEN = 9, 5
@@ -26,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--set', action='append', default=[], metavar='SECTION.KEY=VALUE',
                         help='change one parameter; may be repeated')
     parser.add_argument('--engine', default='finite_volume', metavar='NAME',
-                        help=f'flow solver: {", ".join(options.engine_names())} '
+                        help=f'flow solver: {", ".join(engines.NAMES)} or package.module:Class '
                              '(default: finite_volume)')
     parser.add_argument('--presets', nargs='+', metavar='NAME',
                         help='grid presets (default: all of the engine)')
@@ -56,8 +57,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 def chosen_presets(arguments: argparse.Namespace) -> list[str]:
     """Return the presets to time; raise `BadInput` for an unknown engine or preset."""
-    from dewing_sim.fluid.engines import GRIDS
-    known = options.one_of('--engine', arguments.engine, GRIDS)
+    options.check_engine(arguments.engine)
+    known = engines.find(arguments.engine).grids
     for preset in arguments.presets or []:
         options.one_of('--presets', preset, dict.fromkeys(known))
     return arguments.presets or list(known)
@@ -88,7 +89,7 @@ def time_preset(case: str, engine: str, preset: str, steps: int,
         laps.add()
         passes += state.iterations
     seconds = laps.best(BLOCK)
-    cells = wing.fluid.grid.cells
+    cells = wing.fluid.cells
     return {'cells': cells, 'ms_per_step': 1.0e3 * seconds, 'ns_per_cell': 1.0e9 * seconds / cells,
             'rtf': wing.dt / seconds, 'coupling_iterations_mean': passes / steps,
             'bandwidth_ratio': 1.0e3 * seconds / copy_time(cells, steps),
@@ -106,24 +107,8 @@ def time_parts(wing: Any, state: Any, steps: int) -> dict[str, float]:
         'correct_ms': lambda: fluid.correct(prediction, wall.velocity),
         'observe_ms': lambda: wing.observe(state),
     }
-    if wing.case.numerics.engine == 'finite_volume':
-        parts |= finite_volume_parts(fluid, state.flow, wall)
+    parts |= {f'{name}_ms': work for name, work in fluid.parts(state.flow, wall).items()}
     return {name: best(work, steps) for name, work in parts.items()}
-
-
-def finite_volume_parts(fluid: Any, flow: Any, wall: Any) -> dict[str, Callable[[], Any]]:
-    """Return what `predict` and `correct` spend most of their time on."""
-    import numpy as np
-
-    from dewing_sim.fluid.finite_volume import mapping
-    metrics = mapping.metrics(fluid.grid, wall)
-    still = np.zeros(len(fluid.columns) - 1)
-    solution = fluid.poisson.forward(flow.p)
-    return {
-        'momentum_ms': lambda: fluid.momentum(flow, metrics, wall),
-        'pressure_forward_ms': lambda: fluid.poisson.forward(flow.p),
-        'pressure_backward_ms': lambda: fluid.poisson.backward(*solution, still),
-    }
 
 
 def copy_time(cells: int, repetitions: int) -> float:

@@ -16,6 +16,7 @@ from typing import Any
 from dewing_cli import options, results
 from dewing_cli.progress import bar
 from dewing_sim.files import check_free, new_file
+from dewing_sim.fluid import engines
 
 REPORT, NUMBERS, SERIES, RUNS = 'report.html', 'paper.json', 'csv', 'runs'
 
@@ -24,10 +25,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument('--quick', action='store_true',
                         help='coarse grids, short averages: under two minutes on two cores')
-    known = options.numerics_field('engine').metadata['options']
     parser.add_argument('--engine', metavar='NAME',
-                        help=f'main flow solver: {", ".join(known)} (default: {known[0]}, '
-                             f'with --quick {known[-1]}); the other one runs beside it')
+                        help=f'main flow solver: {", ".join(engines.NAMES)} (default: '
+                             f'{engines.NAMES[0]}, with --quick {engines.NAMES[1]}); the other '
+                             'one runs beside it')
     parser.add_argument('--jobs', type=int, default=2, metavar='N',
                         help='processes at once (default: 2)')
     options.add_results(parser, 'folder of report, numbers and finished runs (default: out/paper)')
@@ -36,10 +37,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compute what is not there yet, then write the report; return 1 if a run failed."""
-    from dewing_cli.paper.plan import ENGINES, make
-    engine = arguments.engine or ENGINES[1 if arguments.quick else 0]
-    if engine not in ENGINES:
-        options.one_of('--engine', engine, dict.fromkeys(ENGINES))
+    from dewing_cli.paper.plan import make
+    engine = arguments.engine or engines.NAMES[1 if arguments.quick else 0]
+    options.one_of('--engine', engine, dict.fromkeys(engines.NAMES))
     options.within('--jobs', arguments.jobs, 1, 64, 'processes')
     folder = Path(arguments.out)
     for path in filter(None, (folder / REPORT, folder / NUMBERS, arguments.json)):

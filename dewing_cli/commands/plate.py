@@ -14,6 +14,8 @@ from typing import Any
 from dewing_cli import options, results
 from dewing_cli.progress import Laps, bar, until_interrupted
 from dewing_sim.files import check_free, new_file
+from dewing_sim.fluid import engines
+from dewing_sim.plugins import is_plugin
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,9 +60,9 @@ def _check(arguments: argparse.Namespace) -> int:
     options.within('--camber', arguments.camber, -0.1, 0.1, 'chords')
     options.within('--re', arguments.re, 10.0, 20000.0, '(Reynolds number)')
     options.within('--dt', arguments.dt, 1.0e-6, 0.1, 't*')
-    for name in ('engine', 'grid'):
-        known = options.numerics_field(name).metadata['options']
-        options.one_of(f'--{name}', getattr(arguments, name), dict.fromkeys(known))
+    options.check_engine(arguments.engine, 'auto')
+    if not is_plugin(arguments.engine):
+        options.one_of('--grid', arguments.grid, dict.fromkeys(engines.GRIDS))
     steps = options.steps_of(arguments.duration, arguments.dt, 't*')
     if arguments.skip is not None:
         options.within('--skip', arguments.skip, 0.0, arguments.duration, 't*')
@@ -107,7 +109,7 @@ def _metrics(arguments: argparse.Namespace, plate: Any, late: list, laps: Laps) 
         'cm_mean': float(cm.mean()),
         'strouhal': lines[0] if lines else None, 'lines': lines,
         'ms_per_step': 1.0e3 * laps.best(), 'threads': numba.get_num_threads(),
-        'cells': plate.fluid.grid.cells, 'dt': plate.dt,
+        'cells': plate.fluid.cells, 'dt': plate.dt,
         'engine': plate.engine, 'grid': arguments.grid,
     }
 

@@ -11,14 +11,15 @@ import argparse
 from dewing_cli import options, results
 from dewing_cli.progress import bar
 from dewing_sim.files import check_free
+from dewing_sim.fluid import engines
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument('--quick', action='store_true', help='only what takes about a minute')
     parser.add_argument('--engine', action='append', metavar='NAME',
-                        help=f'verify this flow solver: {", ".join(options.engine_names())}; may '
-                             'be repeated (default: all)')
+                        help=f'verify this flow solver: {", ".join(engines.NAMES)} or '
+                             'package.module:Class; may be repeated (default: all of dewing)')
     parser.add_argument('--jobs', type=int, metavar='N',
                         help='processes at once (default: idle cores)')
     options.add_results(parser, 'folder of the page verification.md and its images')
@@ -26,10 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Verify, print the table, write what was asked for."""
-    from dewing_sim.fluid.engines import ENGINES
-    engines = list(dict.fromkeys(arguments.engine or ENGINES))
-    for engine in engines:
-        options.one_of('--engine', engine, ENGINES)
+    chosen = list(dict.fromkeys(arguments.engine or engines.NAMES))
+    for engine in chosen:
+        options.check_engine(engine)
     if arguments.jobs is not None:
         options.within('--jobs', arguments.jobs, 1, 1024, 'processes')
     if arguments.json:
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out:
         check_free(f'{arguments.out}/{report.PAGE}', arguments.force)
     with bar('verifying', quiet=arguments.quiet) as show:
-        verification = suite.verify(engines, arguments.quick, arguments.jobs, show)
+        verification = suite.verify(chosen, arguments.quick, arguments.jobs, show)
     if not arguments.quiet:
         print(report.text_table(verification.all_checks))
         print(f'{report.summary(verification)}; {verification.seconds:.0f} s')

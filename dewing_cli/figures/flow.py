@@ -14,7 +14,8 @@ from typing import Any, Iterable
 
 import numpy as np
 
-from dewing_sim.fluid.field import FlowField, Patch, flow_field
+from dewing_sim.errors import BadInput
+from dewing_sim.fluid.field import FlowField, Patch
 from dewing_sim.state import State
 from dewing_sim.wing import Wing
 
@@ -36,14 +37,18 @@ class Picture:
 
 
 def picture(wing: Wing, state: State, exaggeration: float, view: tuple = VIEW) -> Picture:
-    """Return the flow of ``state`` with deflections drawn ``exaggeration`` times as large."""
+    """Return the flow of ``state`` with deflections drawn ``exaggeration`` times as large.
+
+    Raises `BadInput` for an engine without a picture.
+    """
     x, y = wing.membrane.surface(state.motion.position).T
-    alpha = wing.case.flow.angle_of_attack
-    field = flow_field(wing.fluid, state.flow)
+    field = wing.fluid.field(state.flow)
+    if field is None:
+        raise BadInput(f'the engine {wing.case.numerics.engine} has no picture of its flow')
 
     def drawn(px: np.ndarray, py: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         lift = (exaggeration - 1.0) * np.interp(px, x, y, 0.0, 0.0) * np.exp(-py**2)
-        return _turned(px, py + lift, alpha)
+        return _turned(px, py + lift, field.incidence)
 
     def shown(patches: list[Patch]) -> list[Patch]:
         return [_cut(Patch(*drawn(patch.x, patch.y), patch.value), view) for patch in patches]
@@ -51,8 +56,8 @@ def picture(wing: Wing, state: State, exaggeration: float, view: tuple = VIEW) -
     outputs = wing.observe(state)
     title = (f'{wing.case.flow.angle_of_attack_deg:g} deg, t = {1.0e3 * outputs.time:.1f} ms, '
              f'{outputs.voltage:.0f} V, Cl = {outputs.cl:.3f}')
-    return Picture(FlowField(shown(field.vorticity), shown(field.stream)),
-                   np.array(_turned(x, exaggeration * y, alpha)), title, exaggeration)
+    return Picture(FlowField(shown(field.vorticity), shown(field.stream), field.incidence),
+                   np.array(_turned(x, exaggeration * y, field.incidence)), title, exaggeration)
 
 
 def _turned(x: np.ndarray, y: np.ndarray, alpha: float) -> tuple[np.ndarray, np.ndarray]:

@@ -14,6 +14,7 @@ from dewing_cli.paper.result import Result, Tick
 from dewing_cli.paper.watched import TICK_STEPS
 from dewing_sim import parameters
 from dewing_sim.errors import RunFailed
+from dewing_sim.fluid import engines
 from dewing_sim.parameters import Case
 from dewing_sim.records.history import Recorder
 from dewing_sim.scales import Scales
@@ -22,9 +23,7 @@ from dewing_sim.wing import Wing
 KEPT = ('time', 'v_squared', 'cl', 'cd', 'camber_mean', 'camber_max', 'camber_max_position',
         'tension', 'shape_time', 'x', 'y')
 
-MILLISECONDS = {                    # expected, of a coupled step
-    'finite_volume': {'fast': 0.6, 'standard': 1.0, 'fine': 4.0},
-    'conformal': {'realtime': 0.5, 'fast': 0.5, 'standard': 0.8, 'fine': 1.6, 'reference': 1.6}}
+COUPLED = 1.5                       # time of a coupled step over that of a rigid plate, expected
 
 
 @functools.lru_cache(maxsize=64)
@@ -41,8 +40,8 @@ def convective_time(case: Case) -> float:
 def cost(case: Case, duration: float) -> float:
     """Return the expected milliseconds of the start and ``duration`` s of a coupled wing."""
     time = case.numerics.trim_time * convective_time(case) + duration
-    return MILLISECONDS[case.numerics.engine][case.numerics.grid] * (
-        time / case.numerics.time_step)
+    preset = engines.find(case.numerics.engine).grids[case.numerics.grid]
+    return COUPLED * preset.milliseconds * time / case.numerics.time_step
 
 
 def trimmed(wing: Wing, tick: Tick, share: float):
@@ -116,5 +115,5 @@ class Flight:
             'chord': wing.scales.length, 'convective_time': wing.scales.time,
             'frequency': frequency, 'engine': case.numerics.engine, 'grid': case.numerics.grid,
             'v_slack': math.sqrt(wing.v_squared_slack),
-            'cells': int(wing.fluid.grid.cells)}
+            'cells': int(wing.fluid.cells)}
         return Result(values, {name: np.asarray(getattr(history, name)) for name in KEPT})

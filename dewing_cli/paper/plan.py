@@ -15,11 +15,12 @@ from dewing_control.law.registry import LAWS, installed
 from dewing_control.model.identified import CHANGES
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
+from dewing_sim.fluid import engines
 from dewing_sim.identity import loss_of_tension
 from dewing_sim.inputs.disturbance import DISTURBANCES
 from dewing_sim.parameters import Case
 
-ENGINES = ('finite_volume', 'conformal')
+ENGINES = engines.NAMES             # each is computed beside the other
 REYNOLDS = 2500.0
 CHORDS = (0.025, 0.030, 0.035, 0.040, 0.050)    # m
 THICKNESSES = (5.0e-5, 5.0e-4)                  # m: as printed, and as 5 kV would need

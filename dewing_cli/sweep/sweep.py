@@ -87,7 +87,8 @@ class Sweep:
     def fingerprint(self, point: Point) -> str:
         """Return a hash of all that the result of ``point`` depends on, the code included."""
         inputs = parameters.to_yaml(point.case) + f'{self.duration!r} {self.skip!r}'
-        return hashlib.sha256((inputs + fingerprint(__name__)).encode()).hexdigest()[:24]
+        code = fingerprint(__name__, *parameters.outside_modules(point.case))
+        return hashlib.sha256((inputs + code).encode()).hexdigest()[:24]
 
 
 def parse_axes(texts: Sequence[str]) -> tuple[Axis, ...]:

@@ -8,7 +8,8 @@ import numpy as np
 
 from dewing_sim import parameters
 from dewing_sim.errors import RunFailed
-from dewing_sim.fluid.choice import AUTO, Demand, choose
+from dewing_sim.fluid.base import INFLOWS, Demand
+from dewing_sim.fluid.choice import AUTO, choose
 from dewing_sim.fluid.plate import starting_circulation
 from dewing_sim.parameters import Case
 from dewing_sim.scales import Scales
@@ -21,7 +22,8 @@ def settled(case: Case, membrane, scales: Scales, disturbed: bool) -> Case:
     engine, flow, numerics = case.numerics.engine, case.flow, case.numerics
     camber = expected_camber(case, membrane) if engine == AUTO else 0.0
     chosen = choose(engine, Demand(numerics.grid, camber, scales.reynolds, flow.angle_of_attack,
-                                   numerics.time_step / scales.time, disturbed))
+                                   numerics.time_step / scales.time,
+                                   INFLOWS if disturbed else frozenset()))
     return case if chosen == engine else parameters.replace(case, {'numerics.engine': chosen})
 
 

@@ -1,21 +1,25 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the coupling knows of a flow engine.
+"""What the rest of dewing knows of a flow engine.
 
 All quantities are dimensionless (chord, free-stream speed and air density are one).  The wing is
 seen as columns along the chord: heights at the column faces (n + 1,), velocities (n,) and pressure
 jumps below minus above (n,) averaged over a column.
 """
 
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from dewing_sim.fluid.field import FlowField
 from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.fluid.preset import GridPreset
 
 EDGE = 0.01                 # chords around an edge where CFL numbers count apart
-HIGH_SLIP = 0.75            # U: half of what stops a run of the conformal engine
+INFLOWS = frozenset({'gust', 'motion'})     # beside the steady stream, which every engine takes
 
 
 @dataclass(frozen=True)
@@ -64,11 +68,9 @@ class Monitor:
     """How near a flow is to the largest time step it bears.
 
     CFL numbers tell how many cells the air crosses in a step: ``courant`` is the largest further
-    than `EDGE` from both edges, ``edge_courant`` the largest within.  At an edge the cells of the
-    conformal engine shrink with h while the air stays fast, so that ``edge_courant`` is large by
-    nature: some tens are sound there, as the sweeps are implicit.  ``slip`` is the largest that
-    the membrane shed in the last step, in free-stream speeds; it grows before a flow becomes
-    unstable.
+    than `EDGE` from both edges, ``edge_courant`` the largest within, where it may be large by
+    nature, see the engine.  ``slip`` is the largest that the membrane shed in the last step, in
+    free-stream speeds, zero on an engine that sheds nothing.
     """
 
     courant: float
@@ -83,18 +85,63 @@ class Monitor:
                    slip)
 
 
+@dataclass(frozen=True)
+class Demand:
+    """What is asked of an engine: largest expected camber (chords), ``alpha`` (rad), dt (c/U).
+
+    ``inflows`` are those of `INFLOWS` that the wing will meet.
+    """
+
+    grid: str
+    camber: float
+    reynolds: float
+    alpha: float
+    dt: float
+    inflows: frozenset[str] = frozenset()
+
+
 class Fluid(Protocol):
-    """An incompressible Navier-Stokes solver about a moving wing."""
+    """An incompressible flow solver about a moving wing: a class on which every fact stands.
 
-    columns: np.ndarray             # column faces from 0 to 1 (n + 1,)
-    impedance: np.ndarray           # (n, n): of the interface, added mass over theta = 2 dt / 3
+    An engine need not derive from it. One that does inherits what it leaves out among the methods
+    that are written out here: it takes a steady stream only, is verified everywhere, does not
+    slip, and has no picture.
+    """
 
+    name: ClassVar[str]
+    grids: ClassVar[Mapping[str, GridPreset]]   # by name, coarsest first or as they come
+    state: ClassVar[type]               # a dataclass of arrays and numbers, which a file keeps
+    inflows: ClassVar[frozenset[str]] = frozenset()     # of `INFLOWS`, beside a steady stream
+    free_edges: ClassVar[bool] = False  # whether the wall may leave y = 0 at its edges
+
+    alpha: float                        # angle of attack of the undisturbed stream, rad
+    dt: float                           # c/U
+    columns: np.ndarray                 # column faces from 0 to 1 (n + 1,)
+    impedance: np.ndarray               # (n, n): of the interface, added mass over 2 dt / 3
+    cells: int                          # in which the flow is solved
+
+    @classmethod
+    @abstractmethod
+    def preset(cls, grid: str, reynolds: float, alpha: float, dt: float) -> 'Fluid':
+        """Return the engine on one of `grids`, for an angle of attack (rad) and dt (c/U)."""
+
+    @classmethod
+    def obstacle(cls, demand: Demand) -> str | None:
+        """Return why the engine has not been verified for ``demand``, None if it has."""
+        return None
+
+    @abstractmethod
     def rest(self, wall: Wall, circulation: float) -> Any:
-        """Return a starting field with the given bound circulation (U c)."""
+        """Return a starting field, a `state`, with the given bound circulation (U c)."""
 
+    @abstractmethod
     def with_circulation(self, state: Any, circulation: float) -> Any:
-        """Return ``state`` with the far-field values of another total circulation (U c)."""
+        """Return ``state`` with the far-field values of another total circulation (U c).
 
+        A state has it as ``circulation``.
+        """
+
+    @abstractmethod
     def predict(self, state: Any, wall: Wall, inflow: Inflow | None = None) -> Prediction:
         """Advance one step with the wall at its new place, short of its final velocity.
 
@@ -102,14 +149,37 @@ class Fluid(Protocol):
         knows no other raises `BadInput`.
         """
 
+    @abstractmethod
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> Any:
         """Complete the step with the wall velocity (n,) that the coupling found."""
 
+    @abstractmethod
     def loads(self, state: Any) -> Loads:
         """Return the loads of a state."""
 
-    def slip(self, state: Any) -> float:
-        """Return the largest slip shed in the last step, in free-stream speeds; at once."""
-
+    @abstractmethod
     def monitor(self, state: Any) -> Monitor:
         """Return CFL numbers and slip of a state, in the stream without gust, heave and pitch."""
+
+    def slip(self, state: Any) -> float:
+        """Return the largest slip shed in the last step, in free-stream speeds; at once."""
+        return 0.0
+
+    def caution(self, state: Any) -> str:
+        """Return a warning of a state that nears what stops a run, an empty one otherwise."""
+        return ''
+
+    def field(self, state: Any) -> FlowField | None:
+        """Return vorticity and stream function, None if the engine has no picture of them."""
+        return None
+
+    def suction(self, state: Any) -> tuple[np.ndarray, np.ndarray] | None:
+        """Return x and a measure of the flow next to the upper side, reversed where negative.
+
+        None if the engine does not resolve it.
+        """
+        return None
+
+    def parts(self, state: Any, wall: Wall) -> dict[str, Callable[[], Any]]:
+        """Return parts of a step that can run alone, by name, for those who time them."""
+        return {}

@@ -9,7 +9,7 @@ import numpy as np
 import yaml
 
 from dewing_sim.files import new_file, read_npz
-from dewing_sim.fluid.engines import STATES
+from dewing_sim.fluid import engines
 from dewing_sim.parameters import Case, from_mapping, to_mapping
 from dewing_sim.state import State
 from dewing_sim.structure.dynamics.step import Motion
@@ -47,7 +47,7 @@ def _read(path: str | Path) -> tuple[State, Case]:
         if arrays.get('format') != FORMAT:
             raise ValueError(f"format {arrays.get('format')}, expected {FORMAT}")
         case = from_mapping(Case, yaml.safe_load(str(arrays['case'])))
-        values = {'flow': _section(STATES[case.numerics.engine], 'flow', arrays),
+        values = {'flow': _section(engines.find(case.numerics.engine).state, 'flow', arrays),
                   'motion': _section(Motion, 'motion', arrays)}
         for field in dataclasses.fields(State):
             if field.name not in SECTIONS:

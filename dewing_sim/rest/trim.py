@@ -19,13 +19,12 @@ from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.fluid.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
 from dewing_sim.machine import caches
 from dewing_sim.machine import fingerprint as machine
-from dewing_sim.parameters import Case, to_mapping
+from dewing_sim.parameters import Case, outside_modules, to_mapping
 from dewing_sim.rest import checkpoint
 from dewing_sim.scales import Scales
 from dewing_sim.state import State
 from dewing_sim.structure.dynamics.motion import Motion
 from dewing_sim.structure.dynamics.step import Operator, Structure
-from dewing_sim.structure.material import registry
 
 QUASI_STEADY = 10.0                 # c/U
 PROGRESS_STEPS = 50                 # between calls of `progress`
@@ -99,6 +98,6 @@ def fingerprint(wing: Wing) -> str:
     case = to_mapping(wing.case)
     del case['disturbance'], case['gust'], case['rigid_motion'], case['actuation']['voltage_limit']
     digest = hashlib.sha256(yaml.safe_dump(case).encode())
-    sources = (type(wing).__module__, *registry.sources_of(wing.case.membrane.law))
-    digest.update(machine.fingerprint(*sources).encode())
+    sources = machine.fingerprint(type(wing).__module__, *outside_modules(wing.case))
+    digest.update(sources.encode())
     return digest.hexdigest()[:24]

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from dewing_sim.fluid import engines
 from dewing_sim.verification.closed_forms import TRIPLE_DECK
 from dewing_sim.verification.rigid_flow import PlateResult, PlateRun
 from dewing_sim.verification.signals import limit
@@ -17,7 +18,7 @@ IDEAL = 'thin-aerofoil theory, 4 pi f'
 def runs(engine: str, quick: bool) -> dict[str, PlateRun]:
     """Return turned plates, a slightly and a strongly cambered one."""
     chosen = {'turned 0': PlateRun(engine, 'standard', 4.0, 20.0)}
-    if engine != 'conformal':       # whose map keeps the chord where it is
+    if engines.find(engine).free_edges:
         chosen['turned 1'] = PlateRun(engine, 'standard', 3.0, 20.0, rotation=1.0)
         if not quick:
             chosen['turned -1'] = PlateRun(engine, 'standard', 5.0, 20.0, rotation=-1.0)

@@ -3,27 +3,22 @@
 """Flow past a wall whose motion is given, on any engine."""
 
 from dataclasses import dataclass, replace
-from functools import singledispatch
 from typing import Any, Callable, Iterator
 
 import numpy as np
 
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Fluid, Wall
-from dewing_sim.fluid.conformal.engine import Conformal
 from dewing_sim.fluid.finite_volume.engine import FiniteVolume
-from dewing_sim.fluid.finite_volume.grid import PRESETS, Spacing, build
+from dewing_sim.fluid.finite_volume.grid import build
+from dewing_sim.fluid.finite_volume.presets import PRESETS, Spacing
 from dewing_sim.fluid.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
-
-MILLISECONDS = {                        # expected, of a step of a rigid plate
-    'finite_volume': {'fast': 0.4, 'standard': 1.0, 'fine': 4.0},
-    'conformal': {'fast': 0.3, 'standard': 0.5, 'fine': 1.0},
-}
 
 
 def step_cost(engine: str, grid: str) -> float:
-    """Return the expected milliseconds of a step; engines not known here count as the slowest."""
-    return MILLISECONDS.get(engine, {}).get(grid, 4.0)
+    """Return the expected milliseconds of a step, many if the engine has no such grid."""
+    preset = engines.find(engine).grids.get(grid)
+    return preset.milliseconds if preset else 4.0
 
 
 def march(fluid: Fluid, wall_at: Callable[[float], Wall], duration: float, circulation: float,
@@ -43,25 +38,6 @@ def parabola(columns: np.ndarray, camber: float, rate: float) -> Wall:
     antiderivative = 4.0 * (columns**2 / 2.0 - columns**3 / 3.0)
     mean = np.diff(antiderivative) / np.diff(columns)
     return Wall(4.0 * camber * columns * (1.0 - columns), rate * mean)
-
-
-@singledispatch
-def suction_flow(fluid: Any, flow: Any) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return x and a measure of the flow along the upper side, None where it is not known."""
-    return None
-
-
-@suction_flow.register
-def _(fluid: FiniteVolume, flow: Any) -> tuple[np.ndarray, np.ndarray]:
-    grid = fluid.grid
-    return fluid.columns, flow.u[grid.leading:grid.trailing + 1, grid.middle]
-
-
-@suction_flow.register
-def _(fluid: Conformal, flow: Any) -> tuple[np.ndarray, np.ndarray]:
-    upper = slice(len(fluid.grid.xi) // 2 - 1, None, -1)        # from the leading edge
-    place = fluid.geometry.mapping.wall(flow.map).place
-    return place.real[upper], -flow.w[upper, 0]
 
 
 @dataclass(frozen=True)
@@ -137,7 +113,7 @@ class PlateRun:
         alpha = np.radians(self.alpha)
         if self.coarsening == 1.0 and self.extent == 50.0:
             return engines.make(self.engine, self.grid, self.reynolds, alpha, self.dt)
-        spacing = replace(coarser(PRESETS[self.grid], self.coarsening), extent=self.extent)
+        spacing = replace(coarser(PRESETS[self.grid].spacing, self.coarsening), extent=self.extent)
         return FiniteVolume(build(spacing), self.reynolds, alpha, self.dt)
 
     def wall(self, columns: np.ndarray) -> Wall:
@@ -160,7 +136,7 @@ class PlateRun:
             if time > 0.5 * self.duration:
                 jumps.append(loads.jump)
         return PlateResult(*np.array(rows).T, fluid.columns, 2.0 * np.mean(jumps, axis=0),
-                           suction_flow(fluid, flow))
+                           fluid.suction(flow))
 
 
 def coarser(spacing: Spacing, factor: float) -> Spacing:

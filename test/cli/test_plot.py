@@ -11,8 +11,7 @@ from dewing_cli.commands import plot
 from dewing_cli.figures import flow as flow_figure
 from dewing_sim import parameters
 from dewing_sim.fluid.base import Wall
-from dewing_sim.fluid.engines import ENGINES, make
-from dewing_sim.fluid.field import flow_field
+from dewing_sim.fluid.engines import NAMES, make
 from dewing_sim.rest import checkpoint
 from dewing_sim.wing import Wing
 
@@ -51,10 +50,10 @@ def value_at(patches, x: float, y: float, camber: float) -> float:
     return float(griddata(np.concatenate(points), np.concatenate(values), (x, y)))
 
 
-@pytest.mark.parametrize('engine', ENGINES)
+@pytest.mark.parametrize('engine', NAMES)
 def test_stream_function_of_the_start_is_that_of_potential_flow(engine):
     fluid, flow = started(engine, 0.0, 0)
-    patch, = flow_field(fluid, flow).stream
+    patch, = fluid.field(flow).stream
     near = (np.hypot(patch.x - 0.5, patch.y) < 6.0) & (np.hypot(patch.x - 0.5, patch.y) > 1.0)
     z = patch.x[near] - 0.5 + 1j * patch.y[near]
     zeta = 0.5 * (z + np.sqrt(z - 0.5) * np.sqrt(z + 0.5))
@@ -64,11 +63,11 @@ def test_stream_function_of_the_start_is_that_of_potential_flow(engine):
     assert patch.value[near] == pytest.approx(exact, abs=2.0e-3)
 
 
-@pytest.mark.parametrize('engine', ENGINES)
+@pytest.mark.parametrize('engine', NAMES)
 @pytest.mark.parametrize('camber', [0.0, 0.03])
 def test_membrane_is_a_streamline(engine, camber):
     fluid, flow = started(engine, camber, 20)
-    patch, = flow_field(fluid, flow).stream
+    patch, = fluid.field(flow).stream
     height = 4.0 * camber * patch.x * (1.0 - patch.x)
     on_wall = (patch.x > 0.1) & (patch.x < 0.9) & (np.abs(patch.y - height) < 4.0e-3)
     assert on_wall.any()
@@ -77,16 +76,16 @@ def test_membrane_is_a_streamline(engine, camber):
 
 def test_engines_agree_on_the_vorticity_of_the_boundary_layers():
     values = []
-    for engine in ENGINES:
+    for engine in NAMES:
         fluid, flow = started(engine, 0.03, 250)
-        field = flow_field(fluid, flow)
+        field = fluid.field(flow)
         values.append([value_at(field.vorticity, 0.5, 0.03 + side, 0.03)
                        for side in (0.01, -0.01)])
     assert values[0][0] < 0.0 < values[0][1]        # clockwise above, counter-clockwise below
     assert values[0] == pytest.approx(values[1], rel=0.1)
 
 
-@pytest.fixture(scope='module', params=ENGINES)
+@pytest.fixture(scope='module', params=NAMES)
 def state(request, tmp_path_factory):
     """Return the file of a wing's state soon after its start."""
     path = tmp_path_factory.mktemp('state') / f'{request.param}.npz'

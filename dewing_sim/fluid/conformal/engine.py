@@ -15,18 +15,24 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.fluid.base import Loads, Monitor, Prediction, Wall
-from dewing_sim.fluid.conformal import noslip, step
-from dewing_sim.fluid.conformal.courant import courant
+from dewing_sim.fluid.base import INFLOWS, Demand, Fluid, Loads, Monitor, Prediction, Wall
+from dewing_sim.fluid.conformal import NAME, diagnostics, noslip, step
 from dewing_sim.fluid.conformal.edges import EdgeTable
 from dewing_sim.fluid.conformal.frame import Frame
 from dewing_sim.fluid.conformal.geometry import Geometry, WallGeometry
-from dewing_sim.fluid.conformal.grid import LARGEST_STEP, PRESETS, Grid
+from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.mapping import Map
+from dewing_sim.fluid.conformal.presets import PRESETS
 from dewing_sim.fluid.conformal.pressure import added_mass, force
+from dewing_sim.fluid.field import FlowField
 from dewing_sim.fluid.inflow import Inflow
 
 PINNED = 1.0e-9         # chords
+VERIFIED = {            # up to the time step, which its grid limits
+    'camber': (0.0, 0.15),                  # chords
+    'Reynolds number': (100.0, 10000.0),
+    'angle of attack in deg': (0.0, 12.0),
+}
 
 
 @dataclass(frozen=True)
@@ -76,8 +82,10 @@ class Predicted(NamedTuple):
     slip: float
 
 
-class Conformal:
+class Conformal(Fluid):
     """Incompressible Navier-Stokes flow on a conformal map, see `base.Fluid`."""
+
+    name, grids, state, inflows = NAME, PRESETS, FlowState, INFLOWS
 
     def __init__(self, grid: Grid, reynolds: float, alpha: float, dt: float,
                  largest_dt: float = math.inf):
@@ -100,8 +108,23 @@ class Conformal:
 
     @classmethod
     def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'Conformal':
-        """Return the engine on a named grid (`grid.PRESETS`)."""
-        return cls(Grid.build(PRESETS[name]), reynolds, alpha, dt, LARGEST_STEP[name])
+        """Return the engine on a named grid (`PRESETS`)."""
+        return cls(Grid.build(PRESETS[name]), reynolds, alpha, dt, PRESETS[name].largest_step)
+
+    @classmethod
+    def obstacle(cls, demand: Demand) -> str | None:
+        """Return which value of ``demand`` is outside what has been verified, None if none is."""
+        values = (abs(demand.camber), demand.reynolds, abs(math.degrees(demand.alpha)), demand.dt)
+        ranges = VERIFIED | {'time step in c/U': (0.0, PRESETS[demand.grid].largest_step)}
+        for value, (name, (low, high)) in zip(values, ranges.items(), strict=True):
+            if not low <= value <= high:
+                return f'a {name} of {value:.4g} is outside {low:g} to {high:g}'
+        return None
+
+    @property
+    def cells(self) -> int:
+        """Number of nodes, each in a cell."""
+        return self.grid.cells
 
     def rest(self, wall: Wall, circulation: float) -> FlowState:
         """Return the potential flow with the given bound circulation (U c), about to feel no slip.
@@ -165,10 +188,32 @@ class Conformal:
         return state.slip
 
     def monitor(self, state: FlowState) -> Monitor:
-        """Return CFL numbers and slip of a state, in the stream without gust, heave and pitch."""
-        numbers, distance = courant(self.solver.exterior, self.grid, state.psi, state.incidence,
-                                    state.map, state.map_before, self.dt)
+        """Return CFL numbers and slip of a state, in the stream without gust, heave and pitch.
+
+        Next to an edge the cells shrink with h while the air stays fast: some tens are sound
+        there, as the sweeps are implicit.  The slip grows before a flow becomes unstable.
+        """
+        numbers, distance = diagnostics.courant(
+            self.solver.exterior, self.grid, state.psi, state.incidence, state.map,
+            state.map_before, self.dt)
         return Monitor.of(numbers, distance, state.slip)
+
+    def caution(self, state: FlowState) -> str:
+        """Return a warning of a flow that slips half as fast as what stops a run."""
+        if state.slip <= noslip.HIGH_SLIP:
+            return ''
+        return (f'the flow slips along the membrane at {state.slip:.3g} free-stream speeds, half '
+                f'of what stops a run is {noslip.HIGH_SLIP:g}: lower the time step')
+
+    def field(self, state: FlowState) -> FlowField:
+        """Return vorticity on the nodes and the stream function on the cell corners."""
+        return diagnostics.flow_field(self.grid, state.w, state.psi, state.map, state.incidence)
+
+    def suction(self, state: FlowState) -> tuple[np.ndarray, np.ndarray]:
+        """Return x and the clockwise wall vorticity of the upper side, from the leading edge."""
+        upper = slice(len(self.grid.xi) // 2 - 1, None, -1)
+        place = self.geometry.mapping.wall(state.map).place
+        return place.real[upper], -state.w[upper, 0]
 
     def _require_hold(self, slip: float, before: FlowState) -> None:
         """Raise `Diverged` if the flow slips faster than any sound run (or is no number)."""

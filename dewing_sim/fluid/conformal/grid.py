@@ -16,27 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-
-@dataclass(frozen=True)
-class Preset:
-    """Points around the wing (a multiple of 4), rows, first step of eta, outermost eta."""
-
-    around: int
-    rows: int
-    first: float
-    outermost: float = 5.0          # 37 chords
-
-
-PRESETS = {
-    'realtime': Preset(64, 72, 0.008),
-    'fast': Preset(96, 72, 0.008),
-    'standard': Preset(128, 96, 0.006),
-    'reference': Preset(192, 128, 0.005),
-}
-PRESETS['fine'] = PRESETS['reference']      # a name of both engines
-# c/U: largest steps with which a plate at 12 degrees sheds without slip that grows.
-LARGEST_STEP = {'realtime': 0.0205, 'fast': 0.0123, 'standard': 0.0082, 'fine': 0.0041,
-                'reference': 0.0041}
+from dewing_sim.fluid.conformal.presets import Preset
 
 
 class Strip(NamedTuple):

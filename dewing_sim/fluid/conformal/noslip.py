@@ -28,6 +28,7 @@ from dewing_sim.machine.kernels import stage
 BLOCK = 4                   # modes added at once; divides the number of nodes
 NEGLIGIBLE_SLIP = 1.0e-6
 LARGEST_SLIP = 1.5      # shed in one step: 0.8 at an impulsive start, 0.15 later in a sound run
+HIGH_SLIP = 0.5 * LARGEST_SLIP
 NEGLIGIBLE = 1.0e-8         # share of a wall vorticity beyond which its response is cut off
 
 

@@ -8,16 +8,21 @@ membrane has answered.  So the membrane is solved inside the pressure equation a
 stable at any mass ratio.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.fluid.base import Loads, Monitor, Prediction, Wall
-from dewing_sim.fluid.finite_volume import adi, mapping, momentum, projection, transport
-from dewing_sim.fluid.finite_volume.grid import PRESETS, Grid, build
+from dewing_sim.fluid.base import Fluid, Loads, Monitor, Prediction, Wall
+from dewing_sim.fluid.field import FlowField
+from dewing_sim.fluid.finite_volume import NAME, adi, mapping, momentum, projection, transport
+from dewing_sim.fluid.finite_volume.field import flow_field
+from dewing_sim.fluid.finite_volume.grid import Grid, build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.potential import Potential
+from dewing_sim.fluid.finite_volume.presets import PRESETS
 from dewing_sim.fluid.inflow import Inflow
 
 UPWIND_SHARE = 0.5                  # in the far field only
@@ -56,8 +61,13 @@ class _Fields:
     increment: np.ndarray           # jump of phi, above minus below, for the predicted wall
 
 
-class FiniteVolume:
-    """Incompressible Navier-Stokes flow on a membrane-following grid, see `base.Fluid`."""
+class FiniteVolume(Fluid):
+    """Incompressible Navier-Stokes flow on a membrane-following grid, see `base.Fluid`.
+
+    It does not slip: the momentum equation has the wall velocity built in.
+    """
+
+    name, grids, state, free_edges = NAME, PRESETS, FlowState, True
 
     def __init__(self, grid: Grid, reynolds: float, alpha: float, dt: float):
         """Prepare a grid for one Reynolds number, angle of attack (rad) and dt (c/U)."""
@@ -79,8 +89,13 @@ class FiniteVolume:
 
     @classmethod
     def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'FiniteVolume':
-        """Return the engine on a named grid (`grid.PRESETS`)."""
-        return cls(build(PRESETS[name]), reynolds, alpha, dt)
+        """Return the engine on a named grid (`PRESETS`)."""
+        return cls(build(PRESETS[name].spacing), reynolds, alpha, dt)
+
+    @property
+    def cells(self) -> int:
+        """Number of pressure cells."""
+        return self.grid.cells
 
     def rest(self, wall: Wall, circulation: float) -> FlowState:
         """Return the potential flow with the given bound circulation (U c), about to feel no slip.
@@ -162,9 +177,25 @@ class FiniteVolume:
         return Loads(jump, cl=2.0 * float(normal * cos - axial * sin),
                      cd=2.0 * float(normal * sin + axial * cos), cm=2.0 * float(moment))
 
-    def slip(self, state: FlowState) -> float:
-        """Return 0: the momentum equation has the wall velocity built in."""
-        return 0.0
+    def field(self, state: FlowState) -> FlowField:
+        """Return vorticity and stream function on the cell corners."""
+        return flow_field(self.grid, state, self.alpha)
+
+    def suction(self, state: FlowState) -> tuple[np.ndarray, np.ndarray]:
+        """Return x and the speed along the upper side, next to it."""
+        grid = self.grid
+        return self.columns, state.u[grid.leading:grid.trailing + 1, grid.middle]
+
+    def parts(self, state: FlowState, wall: Wall) -> dict[str, Callable[[], Any]]:
+        """Return what `predict` and `correct` spend most of their time on."""
+        metrics = mapping.metrics(self.grid, wall)
+        still = np.zeros(len(self.columns) - 1)
+        solution = self.poisson.forward(state.p)
+        return {
+            'momentum': lambda: self.momentum(state, metrics, wall),
+            'pressure_forward': lambda: self.poisson.forward(state.p),
+            'pressure_backward': lambda: self.poisson.backward(*solution, still),
+        }
 
     def monitor(self, state: FlowState) -> Monitor:
         """Return the CFL numbers of the cells, from the mean fluxes through their faces."""

@@ -12,29 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Spacing:
-    """Cell sizes (chords) that make a grid; growth is the increase of cell size per distance."""
-
-    leading_edge: float             # dx at the leading edge
-    trailing_edge: float            # dx at the trailing edge
-    chordwise: float                # largest dx on the plate
-    wall: float                     # dy at the plate
-    growth_plate: float = 0.12      # along the plate, away from the edges
-    growth_wake: float = 0.08
-    growth_upstream: float = 0.20
-    growth_near: float = 0.12       # across the boundary layer and the near wake
-    growth_far: float = 0.30        # further than `near` from the plate
-    near: float = 0.5
-    extent: float = 50.0            # distance of the outer boundary
-
-
-PRESETS = {
-    'fast': Spacing(0.006, 0.015, 0.05, 0.0025, 0.15, 0.12, 0.35, 0.14, 0.40, 0.4),
-    'standard': Spacing(0.003, 0.006, 0.025, 0.001, growth_near=0.09, near=0.4),
-    'fine': Spacing(0.0015, 0.003, 0.015, 0.0007, 0.07, 0.04, 0.12, 0.06, 0.15),
-}
+from dewing_sim.fluid.finite_volume.presets import Spacing
 
 
 @dataclass(frozen=True)

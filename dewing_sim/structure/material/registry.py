@@ -50,8 +50,3 @@ def elastomer_of(section: parameters.Membrane, scales: Scales) -> Elastomer:
         law_of(section).in_units(scales.pressure), section.bulk_modulus / scales.pressure,
         VACUUM_PERMITTIVITY * section.relative_permittivity
         / (scales.pressure * scales.length ** 2))
-
-
-def sources_of(word: str) -> list[str]:
-    """Return the module of a law from outside, on which results depend, for a fingerprint."""
-    return [] if word in LAWS else [kind_of(word).__module__]

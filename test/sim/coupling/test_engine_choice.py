@@ -11,7 +11,9 @@ from dewing_sim import parameters
 from dewing_sim.build import build_wing
 from dewing_sim.coupling import engine_choice
 from dewing_sim.errors import BadInput
-from dewing_sim.fluid.choice import Demand, choose, obstacle
+from dewing_sim.fluid import engines
+from dewing_sim.fluid.base import INFLOWS, Demand
+from dewing_sim.fluid.choice import choose
 from dewing_sim.fluid.plate import Plate
 from dewing_sim.rest import checkpoint, trim
 from dewing_sim.wing import Wing
@@ -50,8 +52,8 @@ def test_finer_grids_of_the_conformal_engine_take_shorter_steps():
 
 
 def test_a_gust_asks_for_the_conformal_engine_whatever_the_case():
-    gusty = dataclasses.replace(ORDINARY, disturbed=True, reynolds=50.0)
-    assert obstacle(gusty)
+    gusty = dataclasses.replace(ORDINARY, inflows=INFLOWS, reynolds=50.0)
+    assert engines.find('conformal').obstacle(gusty)
     assert choose('auto', gusty) == 'conformal'
     with pytest.raises(BadInput, match="numerics.engine = 'finite_volume' knows no gust"):
         choose('finite_volume', gusty)

@@ -9,8 +9,9 @@ from dewing_sim.errors import Diverged
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.finite_volume import mapping, projection
 from dewing_sim.fluid.finite_volume.engine import FiniteVolume
-from dewing_sim.fluid.finite_volume.grid import PRESETS, Spacing, build
+from dewing_sim.fluid.finite_volume.grid import build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
+from dewing_sim.fluid.finite_volume.presets import PRESETS, Spacing
 from dewing_sim.verification.added_mass import AddedMassRun, sine
 from dewing_sim.verification.rigid_flow import parabola
 from dewing_sim.verification.vortex import VortexRun, free_engine, heaving, with_velocities
@@ -26,7 +27,7 @@ def engine() -> FiniteVolume:
 
 @pytest.mark.parametrize('name', PRESETS)
 def test_presets_put_faces_on_both_edges_and_on_the_plate(name):
-    grid = build(PRESETS[name])
+    grid = build(PRESETS[name].spacing)
     assert grid.x[grid.leading] == 0.0
     assert grid.x[grid.trailing] == 1.0
     assert grid.y[grid.middle] == 0.0

@@ -10,14 +10,15 @@ import pytest
 from dewing_cli.run_metrics import INSTANTS, Watch
 from dewing_sim import parameters
 from dewing_sim.errors import Diverged
-from dewing_sim.fluid.base import EDGE, HIGH_SLIP, Wall
+from dewing_sim.fluid.base import EDGE, Wall
 from dewing_sim.fluid.conformal import noslip
-from dewing_sim.fluid.conformal.courant import courant
+from dewing_sim.fluid.conformal.diagnostics import courant
 from dewing_sim.fluid.conformal.engine import Conformal
 from dewing_sim.fluid.conformal.grid import Grid, Preset
 from dewing_sim.fluid.conformal.metric import metric_and_flux
-from dewing_sim.fluid.finite_volume import grid as finite_volume
 from dewing_sim.fluid.finite_volume.engine import FiniteVolume
+from dewing_sim.fluid.finite_volume.grid import build
+from dewing_sim.fluid.finite_volume.presets import Spacing
 from dewing_sim.fluid.plate import Plate
 from dewing_sim.rest import trim
 from dewing_sim.verification.rigid_flow import parabola
@@ -26,7 +27,7 @@ from dewing_sim.wing import Wing
 
 ALPHA = np.radians(4.0)
 CIRCULATION = 0.2
-COARSE = finite_volume.Spacing(0.004, 0.02, 0.08, 0.003, 0.2, 0.2, 0.4, 0.2, 0.4, extent=20.0)
+COARSE = Spacing(0.004, 0.02, 0.08, 0.003, 0.2, 0.2, 0.4, 0.2, 0.4, extent=20.0)
 
 
 @pytest.fixture(scope='module')
@@ -77,7 +78,7 @@ def test_the_numbers_are_of_the_fluxes_of_the_step_less_those_of_the_grid(engine
 
 
 def test_the_numbers_of_a_uniform_stream_on_finite_volumes():
-    engine = FiniteVolume(finite_volume.build(COARSE), 2500.0, ALPHA, 0.01)
+    engine = FiniteVolume(build(COARSE), 2500.0, ALPHA, 0.01)
     grid, wall = engine.grid, Wall.flat(engine.columns)
     u, v = np.ones((len(grid.x), len(grid.dy))), np.full((len(grid.dx), len(grid.y)), -0.5)
     monitor = engine.monitor(with_velocities(engine, wall, u, v))
@@ -104,7 +105,7 @@ def test_a_run_is_watched_at_every_step_and_at_some_instants():
 
 
 def test_a_wing_warns_at_half_of_what_stops_it_once_the_start_is_over():
-    assert 2.0 * HIGH_SLIP == noslip.LARGEST_SLIP
+    assert 2.0 * noslip.HIGH_SLIP == noslip.LARGEST_SLIP
     wing = Wing(parameters.load('paper', changes={
         'numerics.engine': 'conformal', 'numerics.grid': 'realtime',
         'numerics.time_step': 5.0e-4}))

@@ -12,9 +12,10 @@ from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.conformal import adi, metric, poisson, spectral
 from dewing_sim.fluid.conformal.engine import Conformal
 from dewing_sim.fluid.conformal.exterior import Exterior
-from dewing_sim.fluid.conformal.grid import PRESETS, Grid, Preset
+from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.mapping import Mapping
 from dewing_sim.fluid.conformal.poisson import Poisson
+from dewing_sim.fluid.conformal.presets import PRESETS, Preset
 from dewing_sim.fluid.conformal.spectral import Plan
 from dewing_sim.fluid.conformal.stockham import Buffers, TwiddleFactors, transform
 
