@@ -157,6 +157,8 @@ def test_what_begins_after_the_rest_does_not_change_its_name(changes, cache, no_
 
 def test_a_wing_takes_its_name_from_every_source_that_computes_it():
     code = ('import sys, dewing_sim.wing\n'
+            'from dewing_sim.fluid import engines\n'
+            'for name in engines.NAMES: engines.find(name)\n'
             'print(*[name for name in sys.modules if name.startswith("dewing_")])')
     loaded = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
                             check=True).stdout.split()
