@@ -89,8 +89,7 @@ class ControllerNode(Node):
             self._v_squared = 0.0
             return
         self._memory, self._v_squared = self._law.step(self._memory, measurement)
-        limit = min(self.settings.command.voltage_limit**2, self.identity.v_squared_max)
-        self._saturated += self._v_squared in (0.0, limit)
+        self._saturated += self._v_squared in (0.0, self._law.limit)
 
     def _on_parameters(self, given):
         settings, answer = messages.changed(self.settings, given)

@@ -14,7 +14,7 @@ from typing import Any
 
 from dewing_control.law import registry
 from dewing_control.law.base import Command, Law, Reference
-from dewing_sim import parameters
+from dewing_sim import parameters, plugins
 from dewing_sim.errors import BadInput
 from dewing_sim.parameters import choice, text
 
@@ -27,7 +27,7 @@ class _ByKind:
         """Return the schema for the kind in ``mapping``, and what of ``mapping`` is for it."""
         kind = mapping.get('kind')
         schema = ControllerSettings
-        if isinstance(kind, str) and registry.plugins.is_plugin(kind):
+        if isinstance(kind, str) and plugins.is_plugin(kind):
             schema = _extended(kind, registry.of_kind(kind))
         gone = _names(cls) - _names(schema)         # sections of the law it was before
         return schema, {key: value for key, value in mapping.items() if key not in gone}

@@ -46,12 +46,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Identify, tune, try on the wing, and write everything."""
     settings, bounds = _check(arguments)
+    from dewing_control.law.registry import refusing
     from dewing_control.model.design import Design
     from dewing_control.tuning.tuning import tune
     from dewing_sim.build import build_wing
     built = build_wing(options.load_case(arguments))
     model = _model(arguments, built)
-    design = Design.of(model, settings.reference.output, settings.command.period_steps)
+    with refusing(settings.kind):
+        design = Design.of(model, settings.reference.output, settings.command.period_steps)
     with bar('tuning', 'generations', arguments.quiet) as show:
         judged = tune(settings, built.identity, design, bounds, progress=show)
     folder = Path(arguments.out)

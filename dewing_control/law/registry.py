@@ -7,6 +7,8 @@ A law from outside the package needs no line: its kind is ``package.module:Name`
 
 import dataclasses
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 
 import numpy as np
@@ -79,17 +81,28 @@ def law(settings: Settings, identity: Identity, model: Design | None = None) -> 
     found = of_kind(settings.kind)
     if _missing(found):
         raise BadInput(f"kind = {settings.kind} needs more: pip install '{_missing(found)[0]}'")
+    with refusing(settings.kind):
+        models = (model or _model(settings, identity),) if found.needs_model else ()
+        made = found.of(settings, identity, *models)
+        _try(made, settings, identity)
+    return made
+
+
+@contextmanager
+def refusing(kind: str) -> Iterator[None]:
+    """Turn whatever fails within a design into `BadInput`.
+
+    That is the LinAlgError of a Riccati equation without a solution, or anything that a law from
+    outside raises.
+    """
     try:
-        with np.errstate(all='ignore'):             # what comes of it is looked at below
-            models = (model or _model(settings, identity),) if found.needs_model else ()
-            made = found.of(settings, identity, *models)
-            _try(made, settings, identity)
+        with np.errstate(all='ignore'):             # whether all is finite is tried afterwards
+            yield
     except BadInput:
         raise
-    except Exception as error:      # LinAlgError of a Riccati equation, or a law from outside
-        raise BadInput(f'kind = {settings.kind} cannot be designed with these settings '
+    except Exception as error:
+        raise BadInput(f'kind = {kind} cannot be designed with these settings '
                        f'({type(error).__name__}: {" ".join(str(error).split())})') from error
-    return made
 
 
 def _model(settings: Settings, identity: Identity) -> Design:

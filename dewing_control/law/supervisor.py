@@ -36,12 +36,14 @@ class Supervisor:
     A measurement that is not finite repeats the last V^2; after ``hold`` of them in a row V^2 is
     zero, and the controller starts afresh from there when usable measurements return.
 
-    Raises `RunFailed` if the law itself fails or asks for a V^2 that is not finite.
+    What the law asks for is kept between zero and ``limit`` (V^2). Raises `RunFailed` if the law
+    itself fails or asks for a V^2 that is not finite.
     """
 
     controller: Controller
     period: int
     hold: int
+    limit: float = math.inf
 
     def start(self, v_squared: float = 0.0) -> Memory:
         """Return the memory before the first measurement; V^2 in force is ``v_squared``."""
@@ -71,7 +73,7 @@ class Supervisor:
         if not usable:
             raise RunFailed(f'the control law asked for V^2 = {v_squared} at '
                             f'{measurement.time:g} s')
-        return Memory(inner, v_squared, 0, 0)
+        return Memory(inner, min(max(v_squared, 0.0), self.limit), 0, 0)
 
     def _without_measurement(self, memory: Memory) -> Memory:
         unusable = memory.unusable + 1

@@ -18,8 +18,9 @@ def controller(settings: ControllerSettings, identity: Identity, model: Design |
 
     ``model`` is as in `law`.
     """
-    return Supervisor(law(settings, identity, model), settings.command.period_steps,
-                      settings.command.hold_steps)
+    command = settings.command
+    return Supervisor(law(settings, identity, model), command.period_steps, command.hold_steps,
+                      min(command.voltage_limit**2, identity.v_squared_max))
 
 
 def same_memory(one: ControllerSettings, other: ControllerSettings) -> bool:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from dewing_control.law.registry import law
+from dewing_control.law.registry import law, refusing
 from dewing_control.model.design import Design
 from dewing_control.model.loop import Loop, closed_matrix, sensitivity_at
 from dewing_control.settings import ControllerSettings
@@ -76,11 +76,15 @@ class Judged:
 
 def judge(settings: ControllerSettings, identity: Identity, model: Design, strained: Design,
           ) -> Judged:
-    """Return how the law of ``settings`` does on ``model`` and on it at a lower tension."""
-    compensator = Matrices.of(law(settings, identity, model).compensator())
-    sensitivity = sensitivity_at(model, compensator, FREQUENCY)
-    loops = [Loop.of(plant, compensator) for plant in (model, strained)]
-    error = step_error(model, compensator) if loops[0].stable else np.array([math.inf])
+    """Return how the law of ``settings`` does on ``model`` and on it at a lower tension.
+
+    Raises `BadInput` if it cannot be designed, or has no usable compensator.
+    """
+    with refusing(settings.kind):
+        compensator = Matrices.of(law(settings, identity, model).compensator())
+        sensitivity = sensitivity_at(model, compensator, FREQUENCY)
+        loops = [Loop.of(plant, compensator) for plant in (model, strained)]
+        error = step_error(model, compensator) if loops[0].stable else np.array([math.inf])
     return Judged(settings, compensator, *loops, sensitivity,
                   float(np.abs(error).sum() * model.dt),
                   _saturation(model, sensitivity, settings.reference.target - 1.0))

@@ -14,13 +14,13 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from dewing_control.law.base import Law
-from dewing_control.law.registry import of_kind
+from dewing_control.law.registry import of_kind, refusing
 from dewing_control.model.design import Design
 from dewing_control.settings import ControllerSettings, value_of
 from dewing_control.tuning.bounds import Bounds
 from dewing_control.tuning.judge import Judged, judge
 from dewing_sim import parameters
-from dewing_sim.errors import BadInput, DewingError, RunFailed
+from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import Identity
 
 UNDESIGNABLE = 1.0e3        # above the cost of any law that can be judged
@@ -46,7 +46,9 @@ def tune(settings: ControllerSettings, identity: Identity, model: Design, bounds
     be designed to begin with, `RunFailed` if no candidate meets the bounds.
     """
     from scipy.optimize import differential_evolution
-    ranges, strained = ranges_of(settings.kind), model.at_tension(bounds.tension)
+    ranges = ranges_of(settings.kind)
+    with refusing(settings.kind):
+        strained = model.at_tension(bounds.tension)
     generation = itertools.count(1)
 
     def candidate(logarithms) -> Judged:
@@ -55,7 +57,7 @@ def tune(settings: ControllerSettings, identity: Identity, model: Design, bounds
 
     first = np.log([np.clip(value_of(settings, name), *limits)
                     for name, limits in ranges.items()])
-    _try(candidate, first, settings.kind)
+    candidate(first)                # a law that cannot be judged is no matter of its gains
     result = differential_evolution(
         lambda logarithms: _cost(candidate, logarithms, bounds),
         [tuple(map(math.log, limits)) for limits in ranges.values()],
@@ -67,17 +69,6 @@ def tune(settings: ControllerSettings, identity: Identity, model: Design, bounds
                         f'<= {bounds.saturation:g} and noise gain <= {bounds.noise_gain:g} on '
                         'this model; allow more')
     return best
-
-
-def _try(candidate: Callable[[np.ndarray], Judged], first: np.ndarray, kind: str) -> None:
-    """Judge the first candidate; raise `BadInput` for whatever a law from outside raises."""
-    try:
-        candidate(first)
-    except DewingError:
-        raise
-    except Exception as error:
-        raise BadInput(f'kind = {kind} cannot be tuned ({type(error).__name__}: '
-                       f'{" ".join(str(error).split())})') from error
 
 
 def _cost(candidate: Callable[[np.ndarray], Judged], logarithms: np.ndarray, bounds: Bounds,

@@ -182,6 +182,66 @@ def test_what_cannot_be_tuned_says_so(outside):
         tune(settings(), identity(), design_model(), Bounds())
 
 
+def test_a_compensator_of_another_shape_is_refused(outside):
+    outside(INTEGRATOR.replace('Matrices.siso(np.eye(1),', 'Matrices.siso(np.eye(2),'))
+    with pytest.raises(BadInput, match='cannot be designed with these settings .ValueError'):
+        tune(settings(), identity(), design_model(), Bounds())
+
+
+def test_what_a_law_asks_for_is_kept_within_the_limits(outside):
+    outside(INTEGRATOR.replace('min(max(v_squared, 0.0), self.v_squared_max)',
+                               '3.0e6 * math.cos(1.0e4 * measurement.time)')
+            .replace('import numpy', 'import math\n\nimport numpy'))
+    chosen = settings(command__voltage_limit=500.0)
+    loop = controller(chosen, identity())
+    memory, asked = loop.start(), []
+    for step in range(40):
+        memory, v_squared = loop.step(
+            memory, Measurement(1.0e-4 * step, CAMBER, CAMBER, 0.4, 0.06, 0.0))
+        asked.append(v_squared)
+    assert min(asked) == 0.0 and max(asked) == 500.0**2
+
+
+BASED_ON_LQG = """
+from dataclasses import dataclass
+
+from dewing_control.law.lqg import Lqg
+from dewing_sim.parameters import real
+
+
+@dataclass(frozen=True)
+class Trust:
+    share: float = real('-', 'of the voltage asked for', 0.1, 1.0, default=0.5)
+
+
+class Half(Lqg):
+    about = 'an LQG that goes half way'
+    sections = {**Lqg.sections, 'my_trust': Trust}
+
+    @classmethod
+    def of(cls, settings, identity, model):
+        made = super().of(settings, identity, model)
+        object.__setattr__(made, 'share', settings.my_trust.share)
+        return made
+
+    def step(self, memory, measurement):
+        memory, v_squared = super().step(memory, measurement)
+        return memory, self.share * v_squared
+"""
+
+
+def test_a_law_from_outside_builds_on_one_of_dewing_s_and_its_model(outside):
+    outside(BASED_ON_LQG, 'my_half')
+    chosen = parameters.replace(settings('my_half:Half'), {'lqg.control_weight': 0.5})
+    made = law(chosen, identity(), design_model())
+    base = law(parameters.replace(chosen, {'kind': 'lqg'}), identity(), design_model())
+    sample = Measurement(0.0, 1.01 * CAMBER, CAMBER, 0.4, 0.06, 0.0)
+    answers = [each.step(each.start(1.0e5), sample)[1] for each in (made, base)]
+    assert answers[0] == 0.5 * answers[1] > 0.0
+    with pytest.raises(BadInput, match='model is empty'):
+        law(chosen, identity())
+
+
 @pytest.mark.parametrize('kind', ['periodic', 'lqg', 'mpc'])
 @pytest.mark.parametrize('changes', [
     {'disturbance_model.frequency': 5000.0},
