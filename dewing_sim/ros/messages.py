@@ -184,16 +184,18 @@ def take_overrides(node) -> dict[str, Any]:
     return given
 
 
-def declare(node, section: Any, read_only: bool, live: Collection[str] = ()) -> None:
+def declare(node, section: Any, read_only: bool, live: Collection[str] = (),
+            open_fields: Mapping[str, Any] | None = None) -> None:
     """Declare every leaf of ``section`` with its value, unit, meaning and range.
 
     What is declared already stays as it is. ``live`` names leaves that may be changed although
-    the others are read-only.
+    the others are read-only; ``open_fields`` are the declarations of what stands in open sections.
     """
+    known = open_fields or {}
     for name, value, field in parameters.leaves(section):
         if not node.has_parameter(name):
-            node.declare_parameter(name, value, descriptor(field, read_only and name not in live),
-                                   ignore_override=True)
+            described = descriptor(known.get(name, field), read_only and name not in live)
+            node.declare_parameter(name, value, described, ignore_override=True)
 
 
 def changed(section: Any, given) -> tuple[Any, SetParametersResult]:
