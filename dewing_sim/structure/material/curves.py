@@ -112,6 +112,8 @@ def _stress(elastomer: Elastomer, l1: float, l2: float) -> float:
     def principal(l3):
         return np.diag(elastomer.cauchy_stress(diagonal((l1, l2, l3))))
     volume = l1 * l2
-    l3 = brentq(lambda thickness: principal(thickness)[2],       # tension lets it swell
-                (1.0 - 1.0e-9) / volume, 1.5 / volume, xtol=1e-15)
+    low, high = (1.0 - 1.0e-9) / volume, 1.5 / volume       # tension lets it swell
+    if principal(low)[2] > 0.0:
+        low = 0.5 / volume          # an unstable law that pushes
+    l3 = brentq(lambda thickness: principal(thickness)[2], low, high, xtol=1e-15)
     return float(principal(l3)[0])
