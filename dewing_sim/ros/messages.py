@@ -28,7 +28,7 @@ from visualization_msgs.msg import Marker
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
-from dewing_sim.parameters import Flow
+from dewing_sim.parameters import Case, Flow
 from dewing_sim.plant import Measurement, Outputs, measurement_type
 from dewing_sim.quantities import schema
 
@@ -196,6 +196,15 @@ def declare(node, section: Any, read_only: bool, live: Collection[str] = (),
         if not node.has_parameter(name):
             described = descriptor(known.get(name, field), read_only and name not in live)
             node.declare_parameter(name, value, described, ignore_override=True)
+
+
+def constants(case: Case) -> dict[str, Any]:
+    """Return the declarations of the constants of another law than Gent's, if there are any."""
+    if not case.membrane.constants:
+        return {}
+    from dewing_sim.structure.material.registry import kind_of
+    return {f'membrane.constants.{name}': field
+            for name, field in parameters.fields(kind_of(case.membrane.law))}
 
 
 def changed(section: Any, given) -> tuple[Any, SetParametersResult]:

@@ -35,17 +35,8 @@ def settings_of(node: Node) -> tuple[SimulatorSettings, Case]:
                                {name: given.pop(name) for name in own & given.keys()})
     case = parameters.load(settings.case, Case, given)
     messages.declare(node, settings, read_only=True, live=LIVE)
-    messages.declare(node, case, read_only=True, open_fields=_constants(case))
+    messages.declare(node, case, read_only=True, open_fields=messages.constants(case))
     return settings, case
-
-
-def _constants(case: Case) -> dict[str, Any]:
-    """Return the declarations of the constants of another law than Gent's, if there are any."""
-    if not case.membrane.constants:
-        return {}
-    from dewing_sim.structure.material.registry import kind_of
-    return {f'membrane.constants.{name}': field
-            for name, field in parameters.fields(kind_of(case.membrane.law))}
 
 
 class SimulatorNode(Node):
