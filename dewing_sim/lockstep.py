@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import Any
 
 from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import Outputs, Plant
 from dewing_sim.quantities import schema
 
@@ -62,7 +63,7 @@ class LockStep:
     def advance(self, v_squared: float):
         """Make one step; on `RunFailed` the last good state stays in ``state``."""
         began = perf_counter()
-        state = self.plant.step(self.state, v_squared)
+        state = self.plant.step(self.state, Inputs(v_squared))
         self.outputs = self._observe(state)
         self.state, self.v_squared = state, v_squared
         self.steps += 1

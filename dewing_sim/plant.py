@@ -9,6 +9,7 @@ from typing import Any, Callable, Iterator, Protocol
 
 import numpy as np
 
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.quantities import Absent, output, schema
 
 
@@ -107,7 +108,7 @@ Measurement = measurement_type(schema(Outputs).measured)
 
 
 class Plant(Protocol):
-    """A discrete-time system driven by V^2, held over ``dt`` (zero-order hold, D = 0).
+    """A discrete-time system driven by `Inputs`, held over ``dt`` (zero-order hold, D = 0).
 
     ``state`` is immutable: a step returns a new one, so runs branch from any state for free.
     """
@@ -117,16 +118,16 @@ class Plant(Protocol):
     def rest(self) -> Any:
         """Return the trimmed state at time 0."""
 
-    def step(self, state: Any, v_squared: float) -> Any:
-        """Return the state one ``dt`` later with ``v_squared`` (V^2, never negative) held."""
+    def step(self, state: Any, inputs: Inputs) -> Any:
+        """Return the state one ``dt`` later with ``inputs`` held."""
 
     def observe(self, state: Any) -> Outputs:
         """Return the outputs of ``state``."""
 
 
-def rollout(plant: Plant, state: Any, command: Callable[[Outputs], float], steps: int,
+def rollout(plant: Plant, state: Any, command: Callable[[Outputs], Inputs], steps: int,
             ) -> Iterator[tuple[Any, Outputs]]:
-    """Yield (state, outputs) after each step; ``command`` maps the last outputs to V^2."""
+    """Yield (state, outputs) after each step; ``command`` maps outputs to the next inputs."""
     outputs = plant.observe(state)
     for _ in range(steps):
         state = plant.step(state, command(outputs))

@@ -18,6 +18,7 @@ import numpy as np
 
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.files import new_file, read_npz
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.model import Model
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import extended, schema
@@ -100,9 +101,15 @@ class Reduced:
         return self.trim(self.model.operating_v_squared if self.rest_v_squared is None
                          else self.rest_v_squared)
 
-    def step(self, state: State, v_squared: float) -> State:
-        """Return the state one ``dt`` later; raise `Diverged` when it is not finite."""
-        model = self.model
+    def step(self, state: State, inputs: Inputs) -> State:
+        """Return the state one ``dt`` later; raise `Diverged` when it is not finite.
+
+        Raises `BadInput` for an input that the model does not have.
+        """
+        model, v_squared = self.model, inputs.v_squared
+        if inputs.wall_pressure or inputs.inflow:
+            raise BadInput('reduced model: it has no input but V^2, neither wall_pressure nor '
+                           'inflow')
         with np.errstate(over='ignore', invalid='ignore'):
             x = model.a @ state.x + self.gain * (v_squared - model.operating_v_squared)
         if not math.isfinite(x.sum()):

@@ -11,15 +11,15 @@ import math
 
 import numpy as np
 
-from dewing_sim.coupling import engine_choice, interface
+from dewing_sim.coupling import engine_choice, transfer
+from dewing_sim.coupling.iteration import Coupled, Coupling
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Monitor
-from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.fluid.plate import starting_circulation
 from dewing_sim.inputs.amplifier import Amplifier
-from dewing_sim.inputs.disturbance import wall_pressure
-from dewing_sim.inputs.inflow_schedule import InflowSchedule
+from dewing_sim.inputs.base import Inputs
+from dewing_sim.inputs.sources import Motion, Pressure, Sources
 from dewing_sim.machine import compilation
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
@@ -32,29 +32,35 @@ from dewing_sim.structure.material.elastomer import VACUUM_PERMITTIVITY
 
 
 class Wing:
-    """An immutable membrane wing in a flow, a `plant.Plant`."""
+    """An immutable membrane wing in a flow, a `plant.Plant`.
 
-    def __init__(self, case: Case):
+    A user's functions of time (s) add to what the case says: ``wall_pressure(time)`` is a uniform
+    pressure jump as a fraction of q, positive if it presses the camber up; ``gust(time)`` the
+    gust's speeds (along the free stream, upwards) in m/s; ``motion(time)`` the heave in m and the
+    pitch in rad, about the pivot of the case, both zero at first. Gust and motion have to be
+    smooth, since their rates act too: interpolate a table by a spline.
+    """
+
+    def __init__(self, case: Case, *, wall_pressure: Pressure | None = None,
+                 gust: Motion | None = None, motion: Motion | None = None):
         """Prepare the solvers of ``case``."""
         compilation.prepare()
         self.dt = case.numerics.time_step
         self.scales = Scales.of(case.flow, case.membrane.chord)
         self.membrane = elements.make(case.membrane, self.scales)
-        self.amplifier = Amplifier.of(case.actuation)
-        self.inflow_schedule = InflowSchedule.of(
-            case.flow.angle_of_attack, case.gust, case.rigid_motion, self.scales)
         self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
             case.membrane.prestretch)
         _require_tension(case, math.sqrt(self.v_squared_slack))
+        self.amplifier = Amplifier.of(case.actuation)
+        self.sources = Sources.of(case, self.scales, wall_pressure, gust, motion)
         self.case = engine_choice.settled(case, self.membrane, self.scales,
-                                          not self.inflow_schedule.is_steady)
+                                          not self.sources.inflow_schedule.is_steady)
         self.fluid = engines.make(
             self.case.numerics.engine, case.numerics.grid, self.scales.reynolds,
             case.flow.angle_of_attack, self.dt / self.scales.time)
         self._centres = 0.5 * (self.fluid.columns[1:] + self.fluid.columns[:-1])
-        self._impedance = interface.nodal_impedance(self.fluid, self.membrane)
-        self._operator = self.operator(damping=0.0)
         self._permittivity = VACUUM_PERMITTIVITY * case.membrane.relative_permittivity
+        self._coupling = self.coupling()
 
     def rest(self, progress=None) -> State:
         """Return the trimmed state at time 0 under the voltage of the case, cached on disk.
@@ -63,46 +69,42 @@ class Wing:
         """
         return trim.rest(self, progress)
 
-    def step(self, state: State, v_squared: float) -> State:
-        """Return the state one ``dt`` later with ``v_squared`` (V^2) commanded and held.
+    def step(self, state: State, inputs: Inputs) -> State:
+        """Return the state one ``dt`` later with ``inputs`` held, beside the wing's own sources.
 
         The amplifier, ideal by default, makes the electrodes' V^2 of the command. Raises
         `BadInput` for a V^2 that is negative or not finite, `NotConverged`, `Diverged` or `Slack`
         with the last good state.
         """
-        if not 0.0 <= v_squared < math.inf:
-            raise BadInput(f'v_squared = {v_squared!r} V^2 is out of range: zero or more')
-        v_squared = self.amplifier.drive(state.v_squared, v_squared, self.dt)
-        time = (state.step + 1) * self.dt
-        pressure = 0.5 * wall_pressure(self.case.disturbance, time)     # q is rho U^2 / 2
-        schedule = self.inflow_schedule
-        inflow = None if schedule.is_steady else schedule.at(time / self.scales.time)
-        coupled = self.couple(state, v_squared, pressure, self._operator, inflow=inflow)
-        return State.after(state.step + 1, v_squared, coupled)
+        if not 0.0 <= inputs.v_squared < math.inf:
+            raise BadInput(f'v_squared = {inputs.v_squared!r} V^2 is out of range: zero or more')
+        v_squared = self.amplifier.drive(state.v_squared, inputs.v_squared, self.dt)
+        acting = self.sources.at((state.step + 1) * self.dt, inputs._replace(v_squared=v_squared))
+        return State.after(state.step + 1, v_squared, self.couple(state, acting, self._coupling))
 
-    def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
-               damping: float = 0.0, inflow: Inflow | None = None) -> interface.Coupled:
+    def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> Coupled:
         """Advance flow and membrane by one step; failures carry ``state`` and its time."""
-        numerics = self.case.numerics
         try:
-            return interface.solve(
-                self.fluid, self.membrane, operator, state.flow, state.motion,
-                state.still_jumps, self.dt / self.scales.time, v_squared, pressure,
-                numerics.coupling_tolerance, numerics.coupling_iterations, damping, inflow)
+            return coupling.advance(state, inputs)
         except RunFailed as error:
             message = f'step {state.step + 1} (t = {(state.step + 1) * self.dt:.6g} s): {error}'
             raise type(error)(message, state) from None
 
-    def operator(self, damping: float) -> Operator:
-        """Return the membrane's iteration operator with the flow's added mass (damping in U/c).
+    def coupling(self, damping: float = 0.0) -> Coupling:
+        """Return flow and membrane, damped in proportion to its mass by ``damping`` (U/c).
 
-        It is made about the static shape under the lift of thin-aerofoil theory, near which the
-        wing will move: that only saves iterations.
+        The membrane's iteration operator is made about the static shape under the lift of
+        thin-aerofoil theory, near which the wing will move: that only saves iterations.
         """
         mean_jump = starting_circulation(self.case.flow.angle_of_attack, 0.0)   # Cl / 2
         v_squared = self.case.actuation.voltage**2
-        return Operator.of(self.membrane, self.dt / self.scales.time, self._impedance, damping,
-                           self.membrane.equilibrium(mean_jump, v_squared), v_squared)
+        operator = Operator.of(
+            self.membrane, self.dt / self.scales.time,
+            transfer.nodal_impedance(self.fluid, self.membrane), damping,
+            self.membrane.equilibrium(mean_jump, v_squared), v_squared)
+        numerics = self.case.numerics
+        return Coupling(self.fluid, self.membrane, operator, numerics.coupling_tolerance,
+                        numerics.coupling_iterations)
 
     def observe(self, state: State) -> Outputs:
         """Return the outputs of ``state`` in SI units."""

@@ -16,6 +16,7 @@ from scipy.integrate import trapezoid
 from dewing_sim.errors import BadInput, Slack
 from dewing_sim.files import new_file
 from dewing_sim.identity import Identity
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import Outputs, Plant
 from dewing_sim.quantities import Absent
 
@@ -154,7 +155,7 @@ def run(plant: Plant, start: Any, names: Sequence[str], v_squared: np.ndarray) -
 
 def _step(plant: Plant, state: Any, v_squared: float, number: int) -> Any:
     try:
-        return plant.step(state, v_squared)
+        return plant.step(state, Inputs(v_squared))
     except Slack as error:
         raise BadInput(f'V = {np.sqrt(v_squared):.0f} V slackens the membrane in step {number}: '
                        f'take a smaller amplitude or operating voltage ({error})') from None

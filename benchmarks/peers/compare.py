@@ -32,6 +32,7 @@ from dewing_sim.errors import RunFailed
 from dewing_sim.files import check_free
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.verification.rigid_flow import march, parabola
 from dewing_sim.wing import Wing
 
@@ -135,7 +136,7 @@ def coupled(case: str, grid: str, dt: float) -> dict[str, Any]:
     state = wing.rest()
     clocks = [(perf_counter(), process_time())]
     for _ in range(COUPLED_STEPS):
-        state = wing.step(state, wing.case.actuation.voltage**2)
+        state = wing.step(state, Inputs(wing.case.actuation.voltage**2))
         clocks.append((perf_counter(), process_time()))
     blocks = np.array(clocks)[20:] - np.array(clocks)[:-20]
     wall, cpu = blocks.min(axis=0) / (20 * dt)

@@ -78,6 +78,7 @@ def machine() -> dict[str, Any]:
 def time_preset(case: str, engine: str, preset: str, steps: int,
                 changes: dict[str, Any]) -> dict[str, Any]:
     """Return cells, times and their parts of ``case`` on one grid preset of an engine."""
+    from dewing_sim.inputs.base import Inputs
     from dewing_sim.wing import Wing
     wing = Wing(parameters.load(case, changes={'numerics.trim_time': 2.0} | changes | {
         'numerics.engine': engine, 'numerics.grid': preset}))
@@ -85,7 +86,7 @@ def time_preset(case: str, engine: str, preset: str, steps: int,
     v_squared = wing.case.actuation.voltage**2
     laps, passes = Laps(), 0
     for _ in range(steps):
-        state = wing.step(state, v_squared)
+        state = wing.step(state, Inputs(v_squared))
         laps.add()
         passes += state.iterations
     seconds = laps.best(BLOCK)
@@ -98,9 +99,9 @@ def time_preset(case: str, engine: str, preset: str, steps: int,
 
 def time_parts(wing: Any, state: Any, steps: int) -> dict[str, float]:
     """Return the times (ms) of the parts of a step that can run alone."""
-    from dewing_sim.coupling import interface
+    from dewing_sim.coupling.transfer import wall_of
     fluid, membrane, motion = wing.fluid, wing.membrane, state.motion
-    wall = interface.wall_of(fluid, membrane, motion.position, motion.velocity)
+    wall = wall_of(fluid, membrane, motion.position, motion.velocity)
     prediction = fluid.predict(state.flow, wall)
     parts = {
         'predict_ms': lambda: fluid.predict(state.flow, wall),

@@ -66,6 +66,7 @@ def _film(arguments: argparse.Namespace, wing: Any, state: Any, path: Path) -> N
 
     from dewing_cli.figures import flow as flow_figure
     from dewing_cli.figures.flow import picture
+    from dewing_sim.inputs.base import Inputs
     steps = options.steps_of(arguments.film / FRAMES, wing.dt, 's')
 
     def states() -> Iterator[Any]:
@@ -73,7 +74,7 @@ def _film(arguments: argparse.Namespace, wing: Any, state: Any, path: Path) -> N
         for frame in range(FRAMES):
             yield now
             for _ in range(steps):
-                now = wing.step(now, now.v_squared)
+                now = wing.step(now, Inputs(now.v_squared))
             show(frame + 1, FRAMES)
 
     with bar('filming', 'frames', arguments.quiet) as show, \

@@ -114,6 +114,7 @@ class Loop(NamedTuple):
 def _prepare(case: Case, arguments: argparse.Namespace, settings: Any, steps: int, show) -> Loop:
     """Trim the wing and return the run under the controller or the constant voltage."""
     from dewing_sim.build import build_wing
+    from dewing_sim.inputs.base import Inputs
     from dewing_sim.plant import rollout
     built = build_wing(case, show)
     wing, rest = built.plant, built.rest
@@ -122,7 +123,7 @@ def _prepare(case: Case, arguments: argparse.Namespace, settings: Any, steps: in
         run = closed_loop(wing, rest, controller(settings, built.identity), steps)
     else:
         voltage = case.actuation.voltage if arguments.voltage is None else arguments.voltage
-        run = rollout(wing, rest, lambda _: voltage**2, steps)
+        run = rollout(wing, rest, lambda _: Inputs(voltage**2), steps)
     return Loop(wing, wing.observe(rest), run)
 
 

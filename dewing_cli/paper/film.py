@@ -12,6 +12,7 @@ import numpy as np
 from dewing_cli.figures import flow as flow_figure
 from dewing_cli.paper.flight import case_of, cost, trimmed
 from dewing_cli.paper.result import Result, Tick
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.wing import Wing
 
 FRAME_COST = 400.0          # ms to draw one
@@ -56,7 +57,7 @@ class Film:
         for frame in range(self.frames):
             yield flow_figure.picture(wing, state, self.exaggeration)
             for _ in range(steps):
-                state = wing.step(state, state.v_squared)
+                state = wing.step(state, Inputs(state.v_squared))
             tick(0.4 + 0.4 * frame / self.frames)
 
 

@@ -15,6 +15,7 @@ from dewing_cli.paper.watched import TICK_STEPS
 from dewing_sim import parameters
 from dewing_sim.errors import RunFailed
 from dewing_sim.fluid import engines
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.parameters import Case
 from dewing_sim.records.history import Recorder
 from dewing_sim.scales import Scales
@@ -104,7 +105,7 @@ class Flight:
         recorder = Recorder(case, max(1, round(self.frame / (every * wing.dt))))
         recorder.add(wing.observe(state))
         for step in range(1, steps + 1):
-            state = wing.step(state, self.v_squared((step - 1) * wing.dt, frequency))
+            state = wing.step(state, Inputs(self.v_squared((step - 1) * wing.dt, frequency)))
             if step % every == 0:
                 recorder.add(wing.observe(state))
             if step % TICK_STEPS == 0:

@@ -5,6 +5,7 @@
 from typing import Any
 
 from dewing_cli.paper.result import Tick
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.wing import Wing
 
 TICK_STEPS = 50             # between two reports
@@ -19,8 +20,8 @@ class Watched:
         self.plant, self.dt, self.observe = plant, plant.dt, plant.observe
         self.steps, self.tick = steps, tick
 
-    def step(self, state: Any, v_squared: float) -> Any:
+    def step(self, state: Any, inputs: Inputs) -> Any:
         """Return the next state of the plant."""
         if state.step % TICK_STEPS == 0:
             self.tick(TRIM_SHARE + (1.0 - TRIM_SHARE) * state.step / self.steps)
-        return self.plant.step(state, v_squared)
+        return self.plant.step(state, inputs)

@@ -17,6 +17,7 @@ import numpy as np
 from dewing_cli.run_metrics import mean_name
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine.fingerprint import fingerprint
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
@@ -133,7 +134,8 @@ def _simulate(case: Case, duration: float, skip: float) -> dict[str, float]:
     wing = Wing(case)
     steps = round(duration / wing.dt)
     recorder = Recorder(every=steps)
-    for _, outputs in rollout(wing, wing.rest(), lambda _: case.actuation.voltage**2, steps):
+    held = Inputs(case.actuation.voltage**2)
+    for _, outputs in rollout(wing, wing.rest(), lambda _: held, steps):
         recorder.add(outputs)
     laps.add()
     history = recorder.history()

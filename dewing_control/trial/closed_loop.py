@@ -9,6 +9,7 @@ from dewing_control.law.supervisor import Controller, Supervisor
 from dewing_control.model.design import Design
 from dewing_control.settings import ControllerSettings, value_of
 from dewing_sim.identity import Identity
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import Measurement, Outputs, Plant, rollout
 
 
@@ -43,9 +44,9 @@ def closed_loop(plant: Plant, state: Any, loop: Controller, steps: int,
     """
     memory = loop.start(plant.observe(state).v_squared)
 
-    def command(outputs: Outputs) -> float:
+    def command(outputs: Outputs) -> Inputs:
         nonlocal memory
         memory, v_squared = loop.step(memory, Measurement.of(outputs))
-        return v_squared
+        return Inputs(v_squared)
 
     return rollout(plant, state, command, steps)

@@ -7,6 +7,7 @@ passive one, which an operator can read off, but V_L^2, model and sampling time 
 """
 
 import dataclasses
+import functools
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -16,12 +17,14 @@ from dewing_control.law.registry import LAWS
 from dewing_control.law.supervisor import Controller
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial import closed_loop, trial
-from dewing_control.trial.scenarios import SCENARIOS, Scenario, TwoToneWing
+from dewing_control.trial.scenarios import SCENARIOS, Scenario
 from dewing_control.tuning.printed import printed_gains
 from dewing_sim import parameters
 from dewing_sim.build import Built, build_wing
 from dewing_sim.identity import Identity
+from dewing_sim.inputs.disturbance import wall_pressure
 from dewing_sim.parameters import Case
+from dewing_sim.wing import Wing
 
 KIND = {'pid_paper': 'pid', 'pid_tuned': 'pid'}     # the kinds of two gains; others name one
 CONTROLLERS = ('open_loop', *KIND, *(kind for kind in LAWS if kind not in KIND.values()))
@@ -45,7 +48,8 @@ def build(case: Case, scenario: Scenario) -> Built:
     built = build_wing(changed)
     if scenario.second is None:
         return built
-    return dataclasses.replace(built, plant=TwoToneWing(changed, scenario.second))
+    second = functools.partial(wall_pressure, scenario.second)
+    return dataclasses.replace(built, plant=Wing(changed, wall_pressure=second))
 
 
 def controller(name: str, plan: Plan, scenario: Scenario, identity: Identity,

@@ -5,11 +5,8 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from dewing_sim.fluid.inflow import Inflow
-from dewing_sim.inputs.disturbance import DISTURBANCES, wall_pressure
-from dewing_sim.parameters import Case, Disturbance
-from dewing_sim.state import State
-from dewing_sim.wing import Wing
+from dewing_sim.inputs.disturbance import DISTURBANCES
+from dewing_sim.parameters import Disturbance
 
 
 @dataclass(frozen=True)
@@ -66,17 +63,3 @@ SCENARIOS = {
                             case='paper_alpha8'),
 }
 QUICK = ('fig5', 'target_1', 'below', 'step')
-
-
-class TwoToneWing(Wing):
-    """A wing under the disturbance of its case and a second one; it rests as `Wing` does."""
-
-    def __init__(self, case: Case, second: Disturbance):
-        super().__init__(case)
-        self.second = second
-
-    def couple(self, state: State, v_squared: float, pressure: float, operator: Any,
-               damping: float = 0.0, inflow: Inflow | None = None) -> Any:
-        """Advance flow and membrane by one step; see `Wing.couple`."""
-        pressure += 0.5 * wall_pressure(self.second, (state.step + 1) * self.dt)
-        return super().couple(state, v_squared, pressure, operator, damping, inflow)

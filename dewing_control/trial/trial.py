@@ -11,6 +11,7 @@ import numpy as np
 from dewing_control.law.supervisor import Controller
 from dewing_control.trial.energy import Energy
 from dewing_sim.errors import RunFailed
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import Measurement, Plant
 from dewing_sim.quantities import Absent
 
@@ -60,7 +61,7 @@ def run(plant: Plant, rest: Any, controller: Controller | None, steps: int, nois
                 memory, v_squared = controller.step(
                     memory, _noisy(Measurement.of(outputs), noise * passive, generator))
             seconds = time.perf_counter() - begun
-            state = plant.step(state, v_squared)
+            state = plant.step(state, Inputs(v_squared))
         except RunFailed as error:
             failure = str(error)
             break

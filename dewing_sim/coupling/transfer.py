@@ -7,13 +7,13 @@ each is the transpose of the other, so force and virtual work pass exactly:
 sum_i dx_i jump_i w_i = sum_k f_k . velocity_k.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.fluid.base import Fluid
-from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.machine.kernels import checked_kernel, kernel
+from dewing_sim.structure.dynamics.band import LowRank
 from dewing_sim.structure.dynamics.step import Structure
 
 
@@ -76,18 +76,31 @@ def add_nodal_force(position, jump, place, width, force):
         force[i + 1, 1] += end
 
 
+class ColumnLoad(NamedTuple):
+    """Pressure jumps of columns that moved with the velocity ``reference``, and what more acts.
+
+    Another velocity w changes the jump by -impedance (w - reference); ``uniform`` is added.
+    """
+
+    columns: np.ndarray             # faces (n + 1,)
+    jump: np.ndarray                # (n,)
+    reference: np.ndarray           # (n,)
+    impedance: np.ndarray           # (n, n)
+    uniform: float
+
+
 @kernel
-def add_load(columns, position, velocity, jump, reference, impedance, uniform, force):
-    """Add to ``force`` (n + 1, 2) that of a `Load` whose columns moved with ``reference``."""
-    place, width = overlaps(columns, position)
-    w = column_velocity(columns, position, velocity, place, width)
-    total = np.empty(jump.size)
-    for i in range(jump.size):
-        w[i] -= reference[i]
-        total[i] = jump[i] + uniform
-    for j in range(jump.size):
-        for i in range(jump.size):
-            total[i] -= impedance[i, j] * w[j]
+def add_load(load, position, velocity, force):
+    """Add to ``force`` (n + 1, 2) that of a `ColumnLoad` on nodes with these velocities."""
+    place, width = overlaps(load.columns, position)
+    w = column_velocity(load.columns, position, velocity, place, width)
+    total = np.empty(w.size)
+    for i in range(w.size):
+        w[i] -= load.reference[i]
+        total[i] = load.jump[i] + load.uniform
+    for j in range(w.size):
+        for i in range(w.size):
+            total[i] -= load.impedance[i, j] * w[j]
     add_nodal_force(position, total, place, width, force)
 
 
@@ -119,38 +132,29 @@ def coasting_velocity(columns, position, velocity, position_before, velocity_bef
 
 
 @checked_kernel
-def _nodal_load(columns, position, velocity, jump, reference, impedance, uniform):
+def nodal_load(load, position, velocity):
+    """Return the nodal forces (n + 1, 2) of a `ColumnLoad`."""
     force = np.zeros(position.shape)
-    add_load(columns, position, velocity, jump, reference, impedance, uniform, force)
+    add_load(load, position, velocity, force)
     return force
 
 
-@dataclass(frozen=True, eq=False)
-class Load:
-    """Nodal forces of a flow and of accelerated axes, affine in the nodal velocities.
+def wall_of(fluid: Fluid, structure: Structure, position: np.ndarray, velocity: np.ndarray,
+            ) -> Wall:
+    """Return the wall that the flow sees of nodal positions and velocities (nodes, 2)."""
+    return Wall(*wall(fluid.columns, structure.surface(position), structure.surface(velocity)))
 
-    ``jump`` (columns,) acts if the wall moves with ``velocity`` (columns,).
+
+def nodal_impedance(fluid: Fluid, structure: Structure) -> LowRank:
+    """Return -d force / d velocity (m, m) on the free degrees of freedom at rest.
+
+    Its rank is the number of flow columns.
     """
-
-    fluid: Fluid
-    structure: Structure
-    jump: np.ndarray
-    velocity: np.ndarray
-    wall_pressure: float
-    inflow: Inflow | None = None
-
-    def __call__(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (nodes, 2) at these velocities."""
-        force = self.structure.spread(_nodal_load(
-            self.fluid.columns, self.structure.surface(position),
-            self.structure.surface(velocity), self.jump, self.velocity, self.fluid.impedance,
-            self.wall_pressure))
-        if self.has_frame_acceleration:
-            force -= self.structure.mass[:, None] * self.inflow.frame_acceleration(
-                position, velocity)
-        return force
-
-    @property
-    def has_frame_acceleration(self) -> bool:
-        """Whether the axes are accelerated."""
-        return self.inflow is not None and self.inflow.is_accelerated
+    position = structure.rest_position
+    line = structure.surface(position)
+    unit = np.eye(line.size).reshape(-1, *line.shape)
+    columns = np.array([wall(fluid.columns, line, motion)[1] for motion in unit])
+    basis = np.stack([structure.spread(column.reshape(line.shape)).ravel()[structure.free]
+                      for column in columns.T], axis=1)
+    weight = np.diff(fluid.columns)[:, None] * fluid.impedance
+    return LowRank(np.ascontiguousarray(basis), weight)

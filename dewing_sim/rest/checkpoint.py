@@ -14,7 +14,8 @@ from dewing_sim.parameters import Case, from_mapping, to_mapping
 from dewing_sim.state import State
 from dewing_sim.structure.dynamics.step import Motion
 
-FORMAT = 3
+FORMAT = 4
+RENAMED = {'still_jumps': 'jump_history'}      # since format 3, which is read as well
 SECTIONS = ('flow', 'motion')
 
 
@@ -44,7 +45,8 @@ def load_case(path: str | Path) -> Case:
 
 def _read(path: str | Path) -> tuple[State, Case]:
     with read_npz(path, 'a saved wing state') as arrays:
-        if arrays.get('format') != FORMAT:
+        arrays = {RENAMED.get(name, name): array for name, array in arrays.items()}
+        if arrays.get('format') not in (FORMAT - 1, FORMAT):
             raise ValueError(f"format {arrays.get('format')}, expected {FORMAT}")
         case = from_mapping(Case, yaml.safe_load(str(arrays['case'])))
         values = {'flow': _section(engines.find(case.numerics.engine).state, 'flow', arrays),

@@ -13,6 +13,7 @@ import numpy as np
 import yaml
 
 from dewing_sim.errors import BadInput
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine import caches
 from dewing_sim.rest.trim import QUASI_STEADY, fingerprint
 from dewing_sim.state import State
@@ -52,11 +53,11 @@ def measure(wing: Wing, rest: State, progress=None) -> tuple[float, float]:
 
 def _march(wing: Wing, state: State, duration: float, progress=None):
     """Return samples of the camber over ``duration`` (c/U) without disturbance, and the end."""
-    free = wing.operator(0.0)
+    free, inputs = wing.coupling(), Inputs(state.v_squared)
     total = round(duration * wing.scales.time / wing.dt)
     samples = []
     for step in range(1, total + 1):
-        state = State.after(0, state.v_squared, wing.couple(state, state.v_squared, 0.0, free))
+        state = State.after(0, inputs.v_squared, wing.couple(state, inputs, free))
         if step % SAMPLE == 0 or step == total:
             samples.append(_sample(wing, state))
             if progress:

@@ -14,9 +14,10 @@ from typing import Protocol
 import numpy as np
 import yaml
 
-from dewing_sim.coupling.interface import Coupled
+from dewing_sim.coupling.iteration import Coupled, Coupling
 from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.fluid.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine import caches
 from dewing_sim.machine import fingerprint as machine
 from dewing_sim.parameters import Case, outside_modules, to_mapping
@@ -24,7 +25,7 @@ from dewing_sim.rest import checkpoint
 from dewing_sim.scales import Scales
 from dewing_sim.state import State
 from dewing_sim.structure.dynamics.motion import Motion
-from dewing_sim.structure.dynamics.step import Operator, Structure
+from dewing_sim.structure.dynamics.step import Structure
 
 QUASI_STEADY = 10.0                 # c/U
 PROGRESS_STEPS = 50                 # between calls of `progress`
@@ -39,11 +40,10 @@ class Wing(Protocol):
     fluid: Fluid
     membrane: Structure
 
-    def operator(self, damping: float) -> Operator:
-        """Return the membrane's iteration operator with the flow's added mass."""
+    def coupling(self, damping: float = 0.0) -> Coupling:
+        """Return flow and membrane with a mass-proportional damping (U/c)."""
 
-    def couple(self, state: State, v_squared: float, pressure: float, operator: Operator,
-               damping: float = 0.0) -> Coupled:
+    def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> Coupled:
         """Advance flow and membrane by one step."""
 
 
@@ -60,16 +60,13 @@ def rest(wing: Wing, progress=None) -> State:
 def march(wing: Wing, progress=None) -> State:
     """Compute the rest state; ``progress(done, total)`` counts steps."""
     dt = wing.dt / wing.scales.time
-    v_squared = wing.case.actuation.voltage**2
+    inputs = Inputs(wing.case.actuation.voltage**2)
     total = round(wing.case.numerics.trim_time / dt)
-    damping = 2.0 * first_frequency(wing)
-    overdamped, free = wing.operator(damping), wing.operator(0.0)
+    overdamped, free = wing.coupling(2.0 * first_frequency(wing)), wing.coupling()
     state = start(wing)
     for step in range(total):
-        quasi_steady = step * dt < QUASI_STEADY
-        coupled = wing.couple(state, v_squared, 0.0, overdamped if quasi_steady else free,
-                              damping if quasi_steady else 0.0)
-        state = State.after(0, v_squared, coupled)
+        coupling = overdamped if step * dt < QUASI_STEADY else free
+        state = State.after(0, inputs.v_squared, wing.couple(state, inputs, coupling))
         if step * dt < ADAPTATION_TIME:
             state = replace(state, flow=adapt_circulation(wing.fluid, state.flow, dt))
         if progress and (step + 1) % PROGRESS_STEPS == 0:

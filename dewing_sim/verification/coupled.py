@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_sim import parameters
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.records import spectrum
 from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import block_mean, mean_peak
@@ -66,7 +67,7 @@ class WingRun:
         rows, shapes = [], []
         for step in range(1 + round(self.duration * wing.scales.time / wing.dt)):
             if step:
-                state = wing.step(state, 0.0)
+                state = wing.step(state, Inputs(0.0))
             outputs = wing.observe(state)
             rows.append((outputs.cl, outputs.camber_max / y_ref, outputs.camber_max_position))
             if step % SAMPLE == 0:

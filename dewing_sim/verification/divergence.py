@@ -8,6 +8,7 @@ import numpy as np
 
 from dewing_sim import parameters
 from dewing_sim.fluid.plate import adapt_circulation
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.rest import trim
 from dewing_sim.state import State
 from dewing_sim.verification.closed_forms import TRIPLE_DECK, sail_deflection, sail_divergence
@@ -58,10 +59,10 @@ class SailRun:
 
 def static_deflection(wing: Wing, duration: float) -> float:
     """Return the largest deflection (c) that an overdamped membrane creeps to in ``duration``."""
-    damping = 2.0 * trim.first_frequency(wing)
-    operator, state = wing.operator(damping), trim.start(wing)
+    coupling = wing.coupling(damping=2.0 * trim.first_frequency(wing))
+    state = trim.start(wing)
     for _ in range(round(duration * wing.scales.time / wing.dt)):
-        coupled = wing.couple(state, 0.0, 0.0, operator, damping)
+        coupled = wing.couple(state, Inputs(0.0), coupling)
         state = replace(State.after(0, 0.0, coupled), flow=adapt_circulation(
             wing.fluid, coupled.flow, wing.fluid.dt))
     return wing.observe(state).camber_max / wing.scales.length

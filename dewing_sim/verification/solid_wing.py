@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_sim import parameters
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.state import State
@@ -74,7 +75,7 @@ def _measure(wing: Wing, rest: State, steps: int) -> _Found:
     for height in (PULSE, 0.0):
         state, response = rest, []
         for k in range(steps):
-            state = wing.step(state, resting + (height if k == 0 else 0.0))
+            state = wing.step(state, Inputs(resting + (height if k == 0 else 0.0)))
             outputs = wing.observe(state)
             response.append((outputs.camber_mean, outputs.cl))
         responses.append(response)

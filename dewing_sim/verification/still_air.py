@@ -8,6 +8,7 @@ import numpy as np
 
 from dewing_sim import parameters
 from dewing_sim.fluid.base import Wall
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.state import State
 from dewing_sim.structure.dynamics.step import Motion
 from dewing_sim.verification.closed_forms import frequencies_in_air
@@ -59,7 +60,7 @@ class PluckRun:
         shapes = np.sin(np.pi * np.outer(x, np.arange(1, MODES + 1)))
         state, rows = _released(wing, shapes), []
         for _ in range(round(self.duration / self.dt)):
-            state = wing.step(state, 0.0)
+            state = wing.step(state, Inputs(0.0))
             rows.append(2.0 * state.motion.position[:, 1] @ shapes / (len(x) - 1))
         return self._fit(wing, np.array(rows))
 

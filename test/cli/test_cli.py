@@ -176,10 +176,10 @@ def test_a_run_that_fails_is_kept_and_ends_with_status_1(capsys, monkeypatch):
     from dewing_sim.errors import NotConverged
     from dewing_sim.wing import Wing
 
-    def step(wing, state, v_squared):
+    def step(wing, state, inputs):
         if state.step == 4:
             raise NotConverged('no shape found', state)
-        return original(wing, state, v_squared)
+        return original(wing, state, inputs)
     original = Wing.step
     monkeypatch.setattr(Wing, 'step', step)
     options = ['simulate', *QUICK, '--duration', '0.01', '--out', 'run.npz']

@@ -4,6 +4,7 @@
 
 import json
 import math
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,8 +18,11 @@ from dewing_control.trial import comparison, scenarios, trial
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import loss_of_tension
+from dewing_sim.inputs.base import Inputs
+from dewing_sim.inputs.disturbance import wall_pressure
 from dewing_sim.parameters import Disturbance
 from dewing_sim.plant import Outputs
+from dewing_sim.wing import Wing
 
 pytest.importorskip('osqp')
 COARSE = {'numerics.trim_time': 0.05}
@@ -32,7 +36,7 @@ class Shape:
     def __init__(self, failing=math.inf):
         self.failing = failing
 
-    def step(self, state, v_squared):
+    def step(self, state, inputs):
         if state + 1 >= self.failing:
             raise RunFailed('slack')
         return state + 1
@@ -116,14 +120,13 @@ def test_every_scenario_changes_a_case_that_is_valid(name):
 
 def test_second_tone_adds_to_the_first(tmp_path, monkeypatch):
     monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
-    pair = scenarios.TwoToneWing(
+    pair = Wing(
         parameters.load('paper', changes={**COARSE, 'disturbance.pressure': 0.01}),
-        Disturbance(0.01, 10.0))
-    single = scenarios.Wing(parameters.load('paper', changes={**COARSE,
-                                                              'disturbance.pressure': 0.02}))
+        wall_pressure=partial(wall_pressure, Disturbance(0.01, 10.0)))
+    single = Wing(parameters.load('paper', changes={**COARSE, 'disturbance.pressure': 0.02}))
     states = [wing.rest() for wing in (pair, single)]
     for _ in range(5):
-        states = [wing.step(state, 0.0) for wing, state in zip((pair, single), states)]
+        states = [wing.step(state, Inputs(0.0)) for wing, state in zip((pair, single), states)]
     assert np.array_equal(states[0].motion.position, states[1].motion.position)
 
 

@@ -18,6 +18,7 @@ from dewing_control.law.supervisor import Supervisor
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import Measurement
 
 pytest.importorskip('osqp')
@@ -47,7 +48,7 @@ def run(controller, plant, steps, begin=0.0, hide=()):
         memory, v_squared = controller.step(
             memory, measurement(math.nan if step in hide else camber, step * plant.dt))
         commands.append(v_squared)
-        state = plant.step(state, v_squared)
+        state = plant.step(state, Inputs(v_squared))
     return np.array(cambers), np.array(commands)
 
 
@@ -99,13 +100,13 @@ def test_infeasible_target_gives_zero_volts_and_no_wind_up(kind):
     for _ in range(3000):
         camber = plant.observe(state).camber_mean / CAMBER
         memory, v_squared = low.step(memory, measurement(camber))
-        state = plant.step(state, v_squared)
+        state = plant.step(state, Inputs(v_squared))
     assert v_squared == 0.0 and camber == pytest.approx(1.0, abs=1.0e-6)
     cambers = []
     for _ in range(1500):
         cambers.append(plant.observe(state).camber_mean / CAMBER)
         memory, v_squared = high.step(memory, measurement(cambers[-1]))
-        state = plant.step(state, v_squared)
+        state = plant.step(state, Inputs(v_squared))
     ramp = 0.15 / high_rate(high)
     assert abs(cambers[round(ramp / plant.dt) + 200] - 1.05) < 0.005
     assert max(cambers) < 1.055

@@ -10,6 +10,7 @@ import yaml
 
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.parameters import Case
 from dewing_sim.plant import SCALARS, rollout
 from dewing_sim.settings import SimulatorSettings
@@ -48,7 +49,7 @@ def test_a_shipped_case_steps_on_its_own_grid(name, tmp_path, monkeypatch):
     from dewing_sim.wing import Wing
     monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
     wing = Wing(parameters.load(name, changes={'numerics.trim_time': 0.05}))
-    outputs = [outputs for _, outputs in rollout(wing, wing.rest(), lambda _: 1.0e4, 5)]
+    outputs = [outputs for _, outputs in rollout(wing, wing.rest(), lambda _: Inputs(1.0e4), 5)]
     assert [instant.time for instant in outputs] == pytest.approx(wing.dt * np.arange(1, 6))
     for instant in outputs:
         assert np.isfinite([getattr(instant, scalar) for scalar in SCALARS]).all()

@@ -10,6 +10,7 @@ from reduced_wing import CAMBER, first_mode
 
 from dewing_sim import reduced
 from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.model import Model
 from dewing_sim.parameters import config_file
 from dewing_sim.plant import Measurement, rollout, units_of
@@ -25,14 +26,14 @@ def fibonacci() -> Reduced:
 
 def test_pulse_response_has_the_markov_parameters():
     plant = fibonacci()
-    states = rollout(plant, plant.trim(0.0), lambda outputs: float(outputs.time == 0.0), 8)
+    states = rollout(plant, plant.trim(0.0), lambda outputs: Inputs(float(outputs.time == 0.0)), 8)
     assert [outputs.cl for _, outputs in states] == [1, 1, 2, 3, 5, 8, 13, 21]
 
 
 def test_no_feed_through_and_time_is_exact():
     plant = first_mode()
     rest = plant.rest()
-    after = plant.observe(plant.step(rest, 1.0e6))
+    after = plant.observe(plant.step(rest, Inputs(1.0e6)))
     assert plant.observe(rest).camber_mean == CAMBER
     assert after.time == 1.0e-4 and after.v_squared == 1.0e6
 
@@ -42,14 +43,14 @@ def test_trim_is_steady_with_the_static_gain():
     state = plant.trim(4.0e5)
     camber = plant.observe(state).camber_mean
     assert camber == pytest.approx(CAMBER + 1.56e-11 * 4.0e5, rel=1.0e-12)
-    for _, outputs in rollout(plant, state, lambda _: 4.0e5, 100):
+    for _, outputs in rollout(plant, state, lambda _: Inputs(4.0e5), 100):
         assert outputs.camber_mean == pytest.approx(camber, rel=1.0e-9)
 
 
 def test_output_disturbance_follows_one_minus_cosine():
     plant = first_mode(disturbance=0.05)
-    camber = np.array([outputs.camber_mean
-                       for _, outputs in rollout(plant, plant.rest(), lambda _: 0.0, 1000)])
+    run = rollout(plant, plant.rest(), lambda _: Inputs(0.0), 1000)
+    camber = np.array([outputs.camber_mean for _, outputs in run])
     assert camber[499] == pytest.approx(0.90 * CAMBER, rel=1.0e-12)
     assert camber[-1] == pytest.approx(CAMBER, rel=1.0e-12)
 
@@ -60,9 +61,10 @@ def test_models_and_states_survive_a_file(tmp_path):
     again = reduced.load(tmp_path / 'model.npz')
     assert again.model.output_names == plant.model.output_names
     assert np.array_equal(again.disturbance, plant.disturbance)
-    state = plant.step(plant.rest(), 1.0e5)
+    state = plant.step(plant.rest(), Inputs(1.0e5))
     plant.save(tmp_path / 'state.npz', state)
-    one, other = plant.step(state, 2.0e5), again.step(again.load(tmp_path / 'state.npz'), 2.0e5)
+    one = plant.step(state, Inputs(2.0e5))
+    other = again.step(again.load(tmp_path / 'state.npz'), Inputs(2.0e5))
     assert one.step == other.step and np.array_equal(one.x, other.x)
 
 
@@ -80,9 +82,9 @@ def test_divergence_returns_the_last_good_state():
     plant = fibonacci()
     plant = dataclasses.replace(plant, model=dataclasses.replace(
         plant.model, a=np.array([[0.0, 1.0], [1.0e300, 1.0e300]])))
-    state = plant.step(plant.step(reduced.State(0, np.zeros(2), 0.0), 1.0), 0.0)
+    state = plant.step(plant.step(reduced.State(0, np.zeros(2), 0.0), Inputs(1.0)), Inputs(0.0))
     with pytest.raises(Diverged, match='not finite after step 3') as caught:
-        plant.step(state, 0.0)
+        plant.step(state, Inputs(0.0))
     assert caught.value.state is state
 
 

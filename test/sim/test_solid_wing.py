@@ -7,6 +7,7 @@ import pytest
 
 from dewing_sim import parameters
 from dewing_sim.inputs.amplifier import Amplifier
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.rest.trim import march
 from dewing_sim.structure import elements
 from dewing_sim.structure.dynamics.motion import Motion
@@ -41,7 +42,7 @@ def test_solid_and_membrane_agree():
 def test_solid_elements_are_stepped_from_flow_to_outputs():
     plant = wing(membrane__element='solid', membrane__elements=16, numerics__trim_time=0.1)
     assert isinstance(plant.membrane, Solid)
-    state = plant.step(march(plant), 400.0 ** 2)
+    state = plant.step(march(plant), Inputs(400.0 ** 2))
     outputs = plant.observe(state)
     assert outputs.x.shape == outputs.y.shape == outputs.pressure_jump.shape == (17,)
     assert (outputs.x[0], outputs.y[0]) == (0.0, 0.0)
@@ -53,8 +54,7 @@ def test_solid_elements_are_stepped_from_flow_to_outputs():
 def test_the_last_tangent_serves_the_next_load(monkeypatch):
     solid = elements.make(parameters.replace(parameters.load('paper').membrane,
                                              {'element': 'solid', 'elements': 16}))
-    step = Step(solid, Motion.at_rest(solid.rest_position), 1.0e-4, 1.0e4,
-                Operator.of(solid, 1.0e-4))
+    step = Step(solid, Motion.at_rest(solid.rest_position), 1.0e4, Operator.of(solid, 1.0e-4))
     made, tangent = [], Solid.tangent
     monkeypatch.setattr(Solid, 'tangent', lambda *args: made.append(1) or tangent(*args))
     counts, pressures = [], (0.35, 0.3501, 20.0)
@@ -63,7 +63,7 @@ def test_the_last_tangent_serves_the_next_load(monkeypatch):
                               solid.rest_position)
         counts.append(len(made))
     assert 0 < counts[0] == counts[1] < counts[2]
-    alone = advance(solid, Motion.at_rest(solid.rest_position), 1.0e-4, 1.0e4,
+    alone = advance(solid, Motion.at_rest(solid.rest_position), 1.0e4,
                     lambda p, w: solid.pressure_force(p, pressures[-1]),
                     Operator.of(solid, 1.0e-4))
     assert np.abs(position - alone.position).max() < 1.0e-9 * solid.chord
@@ -76,14 +76,14 @@ def test_steps_with_solid_elements_repeat_bit_for_bit():
     for _ in range(2):
         again = state
         for _ in range(3):
-            again = plant.step(again, 1.0e5)
+            again = plant.step(again, Inputs(1.0e5))
         results.append(again.motion.position)
     assert np.array_equal(*results)
 
 
 def test_the_wing_sees_the_amplifier_s_voltage():
     plant = wing(numerics__trim_time=0.05, actuation__amplifier_lag=1.0e-3)
-    state = plant.step(march(plant), 500.0 ** 2)
+    state = plant.step(march(plant), Inputs(500.0 ** 2))
     expected = Amplifier(1250.0, lag=1.0e-3).drive(0.0, 500.0 ** 2, 1.0e-4)
     assert 0.0 < expected < 60.0 ** 2
     assert plant.observe(state).v_squared == expected
@@ -92,6 +92,6 @@ def test_the_wing_sees_the_amplifier_s_voltage():
 def test_a_viscous_membrane_is_stepped_and_remembers():
     plant = wing(numerics__trim_time=0.05, membrane__viscous_share=0.5,
                  membrane__viscous_time=0.01)
-    state = plant.step(march(plant), 500.0 ** 2)
+    state = plant.step(march(plant), Inputs(500.0 ** 2))
     assert state.motion.memory.shape == (2, 2, 64)
     assert np.isfinite(plant.observe(state).tension)

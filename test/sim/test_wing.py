@@ -10,6 +10,7 @@ import pytest
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Slack
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import SCALARS, rollout
 from dewing_sim.rest import checkpoint, trim
 from dewing_sim.wing import Wing
@@ -47,7 +48,8 @@ def test_disturbance_moves_the_camber_as_the_paper_says():
     wing = Wing(case)
     rest = wing.rest()
     passive = wing.observe(rest).camber_mean
-    camber = [outputs.camber_mean for _, outputs in rollout(wing, rest, lambda _: 0.0, 2000)]
+    camber = [outputs.camber_mean
+              for _, outputs in rollout(wing, rest, lambda _: Inputs(0.0), 2000)]
     relative = np.array(camber[1000:]) / passive - 1.0      # the second period of 10 Hz
     assert relative.mean() == pytest.approx(-0.050, abs=0.005)
     assert 0.5 * np.ptp(relative) == pytest.approx(0.050, abs=0.005)
@@ -55,8 +57,8 @@ def test_disturbance_moves_the_camber_as_the_paper_says():
 
 def test_voltage_lowers_the_tension_and_raises_mean_camber_and_lift(fast, fast_rest):
     def mean(name, v_squared):          # over three periods of the first mode, 72 Hz
-        return np.mean([getattr(outputs, name)
-                        for _, outputs in rollout(fast, fast_rest, lambda _: v_squared, 210)])
+        run = rollout(fast, fast_rest, lambda _: Inputs(v_squared), 210)
+        return np.mean([getattr(outputs, name) for _, outputs in run])
     assert mean('tension', 500.0**2) < mean('tension', 0.0)
     assert mean('camber_mean', 500.0**2) > 1.1 * mean('camber_mean', 0.0)
     assert mean('cl', 500.0**2) > mean('cl', 0.0)
@@ -64,19 +66,20 @@ def test_voltage_lowers_the_tension_and_raises_mean_camber_and_lift(fast, fast_r
 
 RESTART = """
 import sys
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.rest import checkpoint
 from dewing_sim.wing import Wing
 path, out = sys.argv[1:]
 wing, state = Wing(checkpoint.load_case(path)), checkpoint.load(path)
 for _ in range(20):
-    state = wing.step(state, 90000.0)
+    state = wing.step(state, Inputs(90000.0))
 checkpoint.save(out, state, wing.case)
 """
 
 
 def test_twenty_steps_saved_and_continued_elsewhere_equal_forty_bit_for_bit(
         fast, fast_rest, tmp_path):
-    states = [state for state, _ in rollout(fast, fast_rest, lambda _: 90000.0, 40)]
+    states = [state for state, _ in rollout(fast, fast_rest, lambda _: Inputs(90000.0), 40)]
     checkpoint.save(tmp_path / 'half.npz', states[19], fast.case)
     subprocess.run([sys.executable, '-c', RESTART, tmp_path / 'half.npz', tmp_path / 'end.npz'],
                    check=True, cwd=tmp_path.parent)
@@ -93,7 +96,7 @@ def test_twenty_steps_saved_and_continued_elsewhere_equal_forty_bit_for_bit(
 @pytest.mark.parametrize('v_squared', [-1.0, np.nan, np.inf])
 def test_unusable_commands_are_refused(fast, fast_rest, v_squared):
     with pytest.raises(BadInput, match='v_squared'):
-        fast.step(fast_rest, v_squared)
+        fast.step(fast_rest, Inputs(v_squared))
 
 
 def test_voltages_beyond_the_loss_of_tension_are_refused():
@@ -104,7 +107,7 @@ def test_voltages_beyond_the_loss_of_tension_are_refused():
 
 def test_a_membrane_gone_slack_stops_with_the_last_good_state(fast, fast_rest):
     with pytest.raises(Slack, match='slack membrane') as caught:
-        list(rollout(fast, fast_rest, lambda _: 1500.0**2, 100))
+        list(rollout(fast, fast_rest, lambda _: Inputs(1500.0**2), 100))
     assert caught.value.state.step < 100
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from dewing_sim.errors import Slack
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import Outputs
 
 FREQUENCIES = (72.0, 172.0, 272.0)      # Hz, the paper's wing in air
@@ -57,8 +58,9 @@ class SyntheticPlant:
         """Return (steps made, V^2, modal state)."""
         return 0, 0.0, np.zeros(8)
 
-    def step(self, state: tuple, v_squared: float) -> tuple:
+    def step(self, state: tuple, inputs: Inputs) -> tuple:
         """Advance one dt."""
+        v_squared = inputs.v_squared
         if v_squared > self.v_squared_slack:
             raise Slack('tension -0.1 N/m', state)
         number, _, x = state

@@ -12,6 +12,7 @@ from synthetic_plant import DAMPING, FREQUENCIES, SyntheticPlant
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.model import Model
 from dewing_sysid import experiment, figures, plan
 from dewing_sysid.identify import concerns, identify, identify_plant, judge, nrmse_fit, report
@@ -147,7 +148,7 @@ def test_a_doublet_about_a_raised_operating_point_gives_the_same_poles():
     plant = SyntheticPlant()
     start = plant.rest()
     for _ in range(200):
-        start = plant.step(start, 500.0**2)
+        start = plant.step(start, Inputs(500.0**2))
     found = found_on(plant, chosen, raised, start)
     assert found.model.operating_v_squared == 500.0**2
     assert found.model.modes()[0][-3:] == pytest.approx(FREQUENCIES, rel=1e-3)

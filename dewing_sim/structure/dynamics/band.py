@@ -8,7 +8,8 @@ written out, so that no BLAS or thread changes a bit of the result.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -66,21 +67,31 @@ def substitute(factors, rows):
             rows[k, column] = value
 
 
+class Parts(NamedTuple):
+    """What the compiled `solve` takes of an `Inverse`."""
+
+    factors: np.ndarray         # of the band, see `factorise`
+    row: np.ndarray             # of the entries of the basis (m, k) that are not zero
+    column: np.ndarray
+    value: np.ndarray
+    answer: np.ndarray          # (k, m), of the low rank to what basis^T sees
+
+
 @checked_kernel
-def solve(factors, row, column, value, answer, right):
+def solve(inverse, right):
     """Replace ``right`` (1, m) by x - answer^T basis^T x, with x the solution for the band alone.
 
-    Return the largest entry, NaN if one is. The basis has ``value`` at ``row`` and ``column``.
+    Return the largest entry, NaN if one is. ``inverse`` are the `Parts` of an `Inverse`.
     """
-    substitute(factors, right)
-    share = np.empty(answer.shape[0])
+    substitute(inverse.factors, right)
+    share = np.empty(inverse.answer.shape[0])
     for k in range(share.size):
         share[k] = 0.0
-    for entry in range(value.size):
-        share[column[entry]] += value[entry] * right[0, row[entry]]
+    for entry in range(inverse.value.size):
+        share[inverse.column[entry]] += inverse.value[entry] * right[0, inverse.row[entry]]
     for k in range(share.size):
         for i in range(right.shape[1]):
-            right[0, i] -= answer[k, i] * share[k]
+            right[0, i] -= inverse.answer[k, i] * share[k]
     largest = 0.0
     for i in range(right.shape[1]):
         size = abs(right[0, i])
@@ -106,11 +117,7 @@ class LowRank:
 class Inverse:
     """The inverse of a symmetric band plus a multiple of a `LowRank`."""
 
-    factors: np.ndarray
-    row: np.ndarray             # of the entries of the basis (m, k) that are not zero
-    column: np.ndarray
-    value: np.ndarray
-    answer: np.ndarray          # (k, m), of the low rank to what basis^T sees
+    parts: Parts
 
     @classmethod
     def of(cls, band: np.ndarray, low_rank: LowRank, factor: float) -> 'Inverse':
@@ -122,17 +129,16 @@ class Inverse:
         core = np.eye(len(weight)) + weight @ (solved @ basis).T
         answer = np.linalg.solve(core, weight).T @ solved
         row, column = np.array(np.nonzero(basis))
-        return cls(factors, row, column, basis[row, column], answer)
+        return cls(Parts(factors, row, column, basis[row, column], answer))
 
     def about(self, band: np.ndarray) -> 'Inverse':
         """Return the inverse for another ``band`` with the correction for the low rank as here.
 
         It is inexact to the extent that the bands differ: good enough for iterations.
         """
-        return replace(self, factors=factorise(band))
+        return Inverse(self.parts._replace(factors=factorise(band)))
 
     def __call__(self, vector: np.ndarray) -> tuple[np.ndarray, float]:
         """Return the product with ``vector`` (m,) and the size of its largest entry."""
         product = np.array(vector, ndmin=2, order='C')
-        size = solve(self.factors, self.row, self.column, self.value, self.answer, product)
-        return product[0], size
+        return product[0], solve(self.parts, product)

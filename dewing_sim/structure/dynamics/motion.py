@@ -38,6 +38,11 @@ class Motion:
         velocity = np.zeros_like(position)
         return cls(position, velocity, position, velocity)
 
+    @property
+    def history(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Positions now and before, velocities now and before, as kernels take them."""
+        return (self.position, self.position_before, self.velocity, self.velocity_before)
+
     def predict(self, dt: float) -> np.ndarray:
         """Return the position one step ahead, extrapolated with an error of order dt^3."""
         return _combined(self.position, self.velocity, self.velocity_before,

@@ -77,9 +77,12 @@ class Structure(Protocol):
 class Operator:
     """Inverse of the iteration matrix at a reference state, made once and used in every step.
 
+    It belongs to one time step ``dt`` and one mass-proportional ``damping`` (1/time).
     ``impedance`` (m, m) is -d(load)/d(velocity).
     """
 
+    dt: float
+    damping: float
     impedance: LowRank
     inverse: Inverse
 
@@ -95,7 +98,7 @@ class Operator:
         position = structure.rest_position if position is None else position
         impedance = impedance or LowRank.zero(position.ravel()[structure.free].size)
         band = _band(structure, position, v_squared, dt, damping)
-        return cls(impedance, Inverse.of(band, impedance, 1.5 / dt))
+        return cls(dt, damping, impedance, Inverse.of(band, impedance, 1.5 / dt))
 
 
 def _band(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
@@ -108,34 +111,50 @@ def _band(structure: Structure, position: np.ndarray, v_squared: float, dt: floa
     return band
 
 
-def advance(structure: Structure, motion: Motion, dt: float, v_squared: float, load: Load,
-            operator: Operator, damping: float = 0.0, tolerance: float = 1.0e-10,
+class Iteration(Protocol):
+    """A faster form of the iteration of a `Step`, for the loads that it takes."""
+
+    def takes(self, load: Load) -> bool:
+        """Return whether it can correct a position under ``load``."""
+
+    def __call__(self, load: Load, position: np.ndarray, inverse: Inverse,
+                 ) -> tuple[np.ndarray, float]:
+        """Return the position after one correction by ``inverse``, and its largest entry."""
+
+    @property
+    def is_taut(self) -> bool:
+        """Whether its last correction cannot have taken the tension; if not, look."""
+
+
+def advance(structure: Structure, motion: Motion, v_squared: float, load: Load,
+            operator: Operator, tolerance: float = 1.0e-10,
             guess: np.ndarray | None = None) -> Motion:
     """Return the motion one step later under one load, see `Step`. Raises `Slack` also."""
-    step = Step(structure, motion, dt, v_squared, operator, damping)
-    start = motion.predict(dt) if guess is None else guess
+    step = Step(structure.during(motion, operator.dt, v_squared), motion, v_squared, operator)
+    start = motion.predict(operator.dt) if guess is None else guess
     return step.end(step.reach(load, start, tolerance))
 
 
 class Step:
     """The equations of one time step, solved for one load after another.
 
-    Loads ``load(position, velocity)`` return the external nodal forces (nodes, 2), affine in
-    velocity with the slope -``operator.impedance``. ``damping`` is mass-proportional (1/time).
-    Newton's method goes on until the largest correction falls below a tolerance (chords). It keeps
-    a tangent, at first that of ``operator``, as long as corrections stay in the linear range of
-    the structure and shrink well; new tangents keep the flow's part of the operator. The last
-    tangent serves the next load. Where that fails, as after a jump of voltage, the step is made
-    from the present position in several shares of the imbalance there.
+    ``structure`` remembers what it does during this step. Loads ``load(position, velocity)``
+    return the external nodal forces (nodes, 2), affine in velocity with the slope
+    -``operator.impedance``. Newton's method goes on until the largest correction falls below a
+    tolerance (chords). It keeps a tangent, at first that of ``operator``, as long as corrections
+    stay in the linear range of the structure and shrink well; new tangents keep the flow's part
+    of the operator. The last tangent serves the next load. Where that fails, as after a jump of
+    voltage, the step is made from the present position in several shares of the imbalance there.
+    ``iteration`` does the work where it can.
     """
 
-    def __init__(self, structure: Structure, motion: Motion, dt: float, v_squared: float,
-                 operator: Operator, damping: float = 0.0):
-        """Take what the structure remembers into account."""
-        self.structure = structure.during(motion, dt, v_squared)
-        self.motion, self.dt, self.v_squared, self.damping = motion, dt, v_squared, damping
-        self.operator, self.accuracy = operator, 0.0
-        self._inverse = None if self.structure.linear_range < np.inf else operator.inverse
+    def __init__(self, structure: Structure, motion: Motion, v_squared: float,
+                 operator: Operator, iteration: Iteration | None = None):
+        """Start from the operator's tangent."""
+        self.structure, self.motion, self.v_squared = structure, motion, v_squared
+        self.operator, self.dt, self.accuracy = operator, operator.dt, 0.0
+        self._iteration = iteration
+        self._inverse = None if structure.linear_range < np.inf else operator.inverse
         self._exact, self._reached = False, None
 
     def reach(self, load: Load, guess: np.ndarray, tolerance: float = 1.0e-10) -> np.ndarray:
@@ -159,26 +178,25 @@ class Step:
 
     def end(self, position: np.ndarray) -> Motion:
         """Return the motion that ends at ``position``; raise `Slack` if it has no tension."""
-        self._require_taut(position)
+        if self._iteration is None or not self._iteration.is_taut:
+            self.structure.require_taut(position, self.v_squared)
         motion = self.motion
         return Motion(position, motion.rate(position, self.dt), motion.position, motion.velocity,
                       self.structure.after(motion, position, self.v_squared, self.dt))
-
-    def _require_taut(self, position: np.ndarray) -> None:
-        self.structure.require_taut(position, self.v_squared)
 
     def _residual(self, load: Load, position: np.ndarray) -> np.ndarray:
         """Return the imbalance (m,) of the free degrees of freedom."""
         motion, velocity = self.motion, self.motion.rate(position, self.dt)
         force = (self.structure.internal_force(position, self.v_squared)
                  + self.structure.mass[:, None] * motion.acceleration(
-                     velocity, self.dt, self.damping))
+                     velocity, self.dt, self.operator.damping))
         force -= load(position, velocity)
         return force.reshape(-1)[self.structure.free]
 
     def _inverted(self, position: np.ndarray, before: np.ndarray | None) -> Inverse:
         """Return the inverse at ``position``; unless exact, with the operator's flow part."""
-        band = _band(self.structure, position, self.v_squared, self.dt, self.damping, before)
+        band = _band(self.structure, position, self.v_squared, self.dt, self.operator.damping,
+                     before)
         if self._exact:
             return Inverse.of(band, self.operator.impedance, 1.5 / self.dt)
         return self.operator.inverse.about(band)
@@ -222,6 +240,8 @@ class Step:
     def _iterate(self, load: Load, position: np.ndarray, held: np.ndarray | None,
                  ) -> tuple[np.ndarray, float]:
         """Return the position after one correction by the inverse at hand, and its size."""
+        if self._iteration and held is None and self._iteration.takes(load):
+            return self._iteration(load, position, self._inverse)
         residual = self._residual(load, position)
         if held is not None:
             with np.errstate(invalid='ignore'):

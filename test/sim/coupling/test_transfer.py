@@ -167,10 +167,11 @@ def test_a_wall_faster_than_foreseen_is_resisted_by_the_matrix(nodes, columns, s
     position, velocity = deformed(nodes, seed, camber)
     faces, rng = cut(columns, seed), np.random.default_rng(seed + 2)
     jump, reference = rng.normal(size=(2, columns))
-    resistance = np.asfortranarray(rng.normal(size=(columns, columns)))
+    impedance = np.asfortranarray(rng.normal(size=(columns, columns)))
     force = np.ones(position.shape)
-    transfer.add_load(faces, position, velocity, jump, reference, resistance, 0.7, force)
+    load = transfer.ColumnLoad(faces, jump, reference, impedance, 0.7)
+    transfer.add_load(load, position, velocity, force)
     w = transfer.wall(faces, position, velocity)[1]
-    total = jump - resistance @ (w - reference) + 0.7
+    total = jump - impedance @ (w - reference) + 0.7
     assert force - 1.0 == pytest.approx(force_of(faces, position, total),
                                         abs=1.0e-12 * np.abs(total).max() * columns)

@@ -8,14 +8,16 @@ import numpy as np
 import pytest
 
 from dewing_sim import parameters
-from dewing_sim.coupling import interface
+from dewing_sim.coupling.load import Load
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.conformal.frame import Frame
 from dewing_sim.fluid.conformal.metric import metric_and_flux
 from dewing_sim.fluid.inflow import Inflow
-from dewing_sim.inputs.inflow_schedule import SHAPES, Course, InflowSchedule
+from dewing_sim.inputs.base import Inputs
+from dewing_sim.inputs.inflow_schedule import InflowSchedule
+from dewing_sim.inputs.trajectory import SHAPES, Course
 from dewing_sim.rest import trim
 from dewing_sim.verification import unsteady
 from dewing_sim.verification.rigid_flow import parabola
@@ -60,9 +62,10 @@ def test_courses_start_and_end_where_they_say(shape, end):
 def test_nothing_is_a_steady_stream():
     case = parameters.load('paper')
     wing = Wing(case)
-    assert wing.inflow_schedule.is_steady
-    assert wing.inflow_schedule.at(1.0) == Inflow(stream=np.exp(1j * ALPHA), incidence=ALPHA,
-                                                  pivot=case.rigid_motion.pivot)
+    schedule = wing.sources.inflow_schedule
+    assert schedule.is_steady
+    assert schedule.at(1.0) == Inflow(stream=np.exp(1j * ALPHA), incidence=ALPHA,
+                                      pivot=case.rigid_motion.pivot)
 
 
 def test_an_undisturbed_inflow_changes_nothing():
@@ -152,7 +155,7 @@ def test_axes_that_accelerate_load_the_membrane_with_its_inertia():
     wing = Wing(parameters.load('paper', changes=CONFORMAL))
     position = wing.membrane.rest_position
     still = np.zeros(len(wing.fluid.columns) - 1)
-    plain, heaved = (interface.Load(wing.fluid, wing.membrane, still, still, 0.0, inflow)(
+    plain, heaved = (Load.of(wing.fluid, wing.membrane, still, still, Inputs(0.0, 0.0, inflow))(
         position, np.zeros_like(position)) for inflow in (
             None, Inflow(1.0, pivot_acceleration=0.5j)))
     assert heaved[:, 0] == pytest.approx(plain[:, 0])
@@ -166,7 +169,7 @@ def test_the_wing_answers_and_rests_as_without_disturbance(changes, sign):
     assert trim.fingerprint(calm) == trim.fingerprint(disturbed)
     state = other = calm.rest()
     for _ in range(50):                     # the middle of either course
-        state, other = calm.step(state, 0.0), disturbed.step(other, 0.0)
+        state, other = calm.step(state, Inputs(0.0)), disturbed.step(other, Inputs(0.0))
     change = disturbed.observe(other).cl - calm.observe(state).cl
     assert sign * change > 0.1
 
@@ -203,7 +206,7 @@ def test_a_membrane_pressed_down_is_highest_at_an_edge():
         **CONFORMAL, **GUST, 'gust.vertical': -0.3, 'gust.shape': 'ramp'}))
     state = wing.rest()
     for _ in range(100):
-        state = wing.step(state, 0.0)
+        state = wing.step(state, Inputs(0.0))
     outputs = wing.observe(state)
     assert outputs.camber_mean < 0.0
     assert 0.0 <= outputs.camber_max < 1.0e-3 * -outputs.camber_mean

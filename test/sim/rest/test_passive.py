@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dewing_sim import build, parameters
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import rollout
 from dewing_sim.rest import passive
 from dewing_sim.wing import Wing
@@ -39,7 +40,7 @@ def test_a_shedding_wing_has_its_mean_camber(cache):
     mean, largest = passive.camber(wing, rest, lambda *done: calls.append(done))
     assert calls and calls[-1][0] == calls[-1][1]
     steps = round(passive.AVERAGE * wing.scales.time / wing.dt)
-    outputs = [found for _, found in rollout(wing, rest, lambda _: 0.0, steps)]
+    outputs = [found for _, found in rollout(wing, rest, lambda _: Inputs(0.0), steps)]
     assert np.ptp([found.camber_mean for found in outputs]) > 0.05 * mean
     assert mean == pytest.approx(np.mean([found.camber_mean for found in outputs]), rel=2.0e-3)
     assert largest == pytest.approx(np.mean([found.camber_max for found in outputs]), rel=2.0e-3)

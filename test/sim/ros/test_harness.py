@@ -22,6 +22,7 @@ from dewing_control.node import ControllerNode
 from dewing_sim import reduced
 from dewing_sim.errors import RunFailed
 from dewing_sim.identity import Identity
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.lockstep import Deadlines
 from dewing_sim.ros import harness, messages, qos
 from dewing_sim.ros.node import SimulatorNode
@@ -245,7 +246,7 @@ def test_a_miss_counts_once_and_is_not_made_up_for():
 
 def test_a_saved_state_is_restored_with_its_time_and_command(session, settings, tmp_path):
     plant = first_mode()
-    plant.save(tmp_path / 'before.npz', plant.step(plant.rest(), 4.0e5))
+    plant.save(tmp_path / 'before.npz', plant.step(plant.rest(), Inputs(4.0e5)))
     session.add(SimulatorNode, settings | {'restore': str(tmp_path / 'before.npz')})
     script = session.add(Scripted)
     session.spin_until(lambda: script.measurements, PATIENCE)

@@ -104,7 +104,7 @@ def test_the_balance_of_bdf2_closes_too():
     operator, parts = Operator.of(THIN, dt), Balance()
     for k in range(60):
         load = THIN.pressure_force(THIN.rest_position, 1.0 - np.cos(0.2 * k))
-        after = advance(THIN, motion, dt, 1.0e5, lambda p, w, f=load: f, operator,
+        after = advance(THIN, motion, 1.0e5, lambda p, w, f=load: f, operator,
                         tolerance=1e-13)
         rate = (3.0 * after.velocity - 4.0 * motion.velocity + motion.velocity_before) / (2 * dt)
         parts = parts.plus(balance(THIN, motion, after, 1.0e5, 1.0e5, rate,

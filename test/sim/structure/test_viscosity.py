@@ -52,8 +52,8 @@ def settle(membrane, steps, dt=1.0e-3, pressure=20.0, motion=None):
     motion = motion or Motion.at_rest(membrane.rest_position)
     operator = Operator.of(membrane, dt, damping=2000.0)
     for _ in range(steps):
-        motion = advance(membrane, motion, dt, 1.0e5,
-                         lambda p, w: membrane.pressure_force(p, pressure), operator, 2000.0)
+        motion = advance(membrane, motion, 1.0e5,
+                         lambda p, w: membrane.pressure_force(p, pressure), operator)
     return motion
 
 

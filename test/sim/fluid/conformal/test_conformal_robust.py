@@ -10,6 +10,7 @@ from dewing_sim.errors import Diverged, NotConverged
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.plate import Plate
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.inflow_schedule import Course
 from dewing_sim.rest import trim
 from dewing_sim.verification.rigid_flow import parabola
@@ -76,7 +77,7 @@ def test_a_wing_bears_violent_steps_of_the_voltage():
     calm = wing.observe(state).camber_max
     cambers = []
     for step in range(80):
-        state = wing.step(state, wing.case.actuation.voltage_limit**2 * (step // 7 % 2))
+        state = wing.step(state, Inputs(wing.case.actuation.voltage_limit**2 * (step // 7 % 2)))
         cambers.append(wing.observe(state).camber_max)
     assert calm < max(cambers) < 0.1 * wing.case.membrane.chord
     assert np.isfinite(wing.observe(state).cl)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dewing_sim import parameters
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import SCALARS, rollout
 from dewing_sim.rest import checkpoint, trim
 from dewing_sim.wing import Wing
@@ -34,7 +35,7 @@ def test_paper_wing_at_rest_meets_its_targets(paper):
 
 def test_voltage_raises_camber_and_a_step_needs_few_passes(paper):
     plant, rest = paper
-    outputs = [outputs for _, outputs in rollout(plant, rest, lambda _: 1000.0**2, 200)]
+    outputs = [outputs for _, outputs in rollout(plant, rest, lambda _: Inputs(1000.0**2), 200)]
     assert np.mean([instant.camber_mean for instant in outputs]) > 1.5 * plant.observe(
         rest).camber_mean
     assert np.mean([instant.coupling_iterations for instant in outputs]) < 1.7
@@ -42,7 +43,7 @@ def test_voltage_raises_camber_and_a_step_needs_few_passes(paper):
 
 def test_a_saved_state_continues_bit_for_bit(paper, tmp_path):
     plant, rest = paper
-    states = [state for state, _ in rollout(plant, rest, lambda _: 90000.0, 40)]
+    states = [state for state, _ in rollout(plant, rest, lambda _: Inputs(90000.0), 40)]
     checkpoint.save(tmp_path / 'half.npz', states[19], plant.case)
     fresh = Wing(checkpoint.load_case(tmp_path / 'half.npz'))
     state = checkpoint.load(tmp_path / 'half.npz')
@@ -60,5 +61,6 @@ def test_coupling_is_stable_for_a_membrane_of_hardly_any_mass(dt):
     plant = wing(**{'numerics.time_step': dt, 'membrane.density': 10.0,
                     'numerics.trim_time': 4.0})
     rest = trim.march(plant)
-    heights = [outputs.camber_mean for _, outputs in rollout(plant, rest, lambda _: 0.0, 300)]
+    heights = [outputs.camber_mean
+               for _, outputs in rollout(plant, rest, lambda _: Inputs(0.0), 300)]
     assert np.ptp(heights[-50:]) < 0.1 * np.mean(heights)

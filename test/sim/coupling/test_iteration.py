@@ -9,6 +9,7 @@ import pytest
 
 from dewing_sim import parameters
 from dewing_sim.errors import NotConverged
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.rest import trim
 from dewing_sim.wing import Wing
 
@@ -20,7 +21,7 @@ def test_coupling_that_cannot_converge_says_so_and_keeps_the_last_state():
     wing = Wing(case)
     state = trim.start(wing)
     with pytest.raises(NotConverged, match=r'step 1 \(t = 0\.0001 s\): coupling') as caught:
-        wing.step(state, 0.0)
+        wing.step(state, Inputs(0.0))
     assert caught.value.state is state
 
 
@@ -31,7 +32,7 @@ def test_coupling_is_stable_far_below_the_added_mass():
     state = trim.start(wing)
     passes = []
     for _ in range(60):
-        state = wing.step(state, 0.0)
+        state = wing.step(state, Inputs(0.0))
         passes.append(state.iterations)
     assert max(passes[1:]) <= 5
     assert 0.0 < wing.observe(state).camber_max < 1.0e-3
@@ -46,11 +47,11 @@ def test_extrapolated_loads_foresee_the_shape():
     passes = []
     for step in range(12):
         v_squared = 900.0**2 if step > 3 else 0.0
-        ignorant = wing.step(dataclasses.replace(knowing, still_jumps=np.empty((0, 0))),
-                             v_squared)
-        knowing = wing.step(knowing, v_squared)
+        ignorant = wing.step(dataclasses.replace(knowing, jump_history=np.empty((0, 0))),
+                             Inputs(v_squared))
+        knowing = wing.step(knowing, Inputs(v_squared))
         passes.append((knowing.iterations, ignorant.iterations))
-    assert len(knowing.still_jumps) == 3
+    assert len(knowing.jump_history) == 3
     ours, theirs = np.sum(passes, axis=0)
     assert ours <= theirs - 8, passes
     assert knowing.motion.position == pytest.approx(ignorant.motion.position, abs=1.0e-6)

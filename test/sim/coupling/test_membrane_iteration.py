@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from dewing_sim import parameters
-from dewing_sim.coupling import transfer
-from dewing_sim.coupling.membrane_step import MembraneStep, step_of
+from dewing_sim.coupling.load import Load
+from dewing_sim.coupling.membrane_iteration import MembraneIteration, iteration_of
 from dewing_sim.errors import Diverged, Slack
 from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.structure.dynamics.step import Motion, Operator, Step
 from dewing_sim.structure.elements import make
 from dewing_sim.structure.membrane import Membrane
@@ -26,31 +27,33 @@ PLACE = MEMBRANE.rest_position[:, :1] / CHORD
 ARCH = CHORD * np.sin(np.pi * PLACE) * [[0.0, 1.0]]
 MOTION = Motion(MEMBRANE.rest_position + 0.020 * ARCH, 2.0 * ARCH,
                 MEMBRANE.rest_position + 0.019 * ARCH, 1.5 * ARCH)
-OPERATOR = Operator.of(MEMBRANE, DT)
+OPERATOR = Operator.of(MEMBRANE, DT, damping=30.0)
 
 
-def loaded(pressure: float = 10.0, inflow: Inflow | None = None) -> transfer.Load:
+def loaded(pressure: float = 10.0, inflow: Inflow | None = None) -> Load:
     """Return the load of a flow on 9 columns that resists motion."""
     columns = CHORD * np.linspace(0.0, 1.0, 10)**1.2
     rng = np.random.default_rng(2)
     fluid = SimpleNamespace(columns=columns, impedance=np.asfortranarray(
         10.0 * np.eye(9) + rng.uniform(0.0, 3.0, (9, 9))))
-    return transfer.Load(fluid, MEMBRANE, pressure * rng.uniform(0.5, 1.5, 9),
-                         0.05 * rng.normal(size=9), 0.3, inflow)
+    return Load.of(fluid, MEMBRANE, pressure * rng.uniform(0.5, 1.5, 9),
+                   0.05 * rng.normal(size=9), Inputs(0.0, 0.6, inflow))
 
 
 def steps(motion: Motion = MOTION, v_squared: float = V_SQUARED, membrane: Membrane = MEMBRANE,
-          ) -> tuple[MembraneStep, Step]:
-    arguments = membrane, motion, DT, v_squared, OPERATOR, 30.0
-    return step_of(*arguments), Step(*arguments)
+          ) -> tuple[Step, Step]:
+    """Return the compiled step and the general one."""
+    arguments = membrane.during(motion, DT, v_squared), motion, v_squared, OPERATOR
+    return Step(*arguments, iteration_of(*arguments)), Step(*arguments)
 
 
-@pytest.mark.parametrize('element, kind', [('membrane', MembraneStep), ('solid', Step)])
+@pytest.mark.parametrize('element, kind', [
+    ('membrane', MembraneIteration), ('solid', type(None))])
 def test_the_step_of_a_membrane_is_compiled(element, kind):
     structure = make(parameters.replace(SECTION, {'element': element}))
-    step = step_of(structure, Motion.at_rest(structure.rest_position), DT, 0.0,
-                   Operator.of(structure, DT))
-    assert type(step) is kind
+    iteration = iteration_of(structure, Motion.at_rest(structure.rest_position), 0.0,
+                             Operator.of(structure, DT))
+    assert type(iteration) is kind
 
 
 @pytest.mark.parametrize('inflow', [None, Inflow(stream=1.0, pivot_acceleration=30.0 - 50.0j)])
