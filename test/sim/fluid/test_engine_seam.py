@@ -17,6 +17,7 @@ from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.plate import Plate
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import rollout
 from dewing_sim.rest import checkpoint, trim
 from dewing_sim.schema import outside_modules
@@ -74,7 +75,7 @@ def test_a_wing_flies_on_it_and_goes_on_from_a_file(tmp_path):
     expected = 2.0 * np.pi * (np.sin(ALPHA) + 2.0 * outputs.camber_max / wing.scales.length)
     assert outputs.cl == pytest.approx(expected, rel=0.03)
     assert outputs.camber_max > 0.0
-    run = list(rollout(wing, rest, lambda _: 300.0**2, steps=20))
+    run = list(rollout(wing, rest, lambda _: Inputs(300.0**2), steps=20))
     assert max(outputs.coupling_iterations for _, outputs in run) <= 3
     state, outputs = run[-1]
     assert outputs.camber_max > wing.observe(rest).camber_max
@@ -84,7 +85,7 @@ def test_a_wing_flies_on_it_and_goes_on_from_a_file(tmp_path):
     assert case == wing.case
     assert type(again.flow) is type(wing.fluid).state
     ends = [last for start in (state, again)
-            for _, last in [*rollout(Wing(case), start, lambda _: 300.0**2, steps=3)][-1:]]
+            for _, last in [*rollout(Wing(case), start, lambda _: Inputs(300.0**2), steps=3)][-1:]]
     assert ends[0].cl == ends[1].cl and np.array_equal(ends[0].y, ends[1].y)
 
 
