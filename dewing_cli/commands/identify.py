@@ -44,6 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     options.add_numerics(parser, 's')
     options.add_results(parser, 'write the model as npz')
     group = parser.add_argument_group('more results')
+    group.add_argument('--mat', metavar='FILE', help='write the model as mat, for MATLAB, too')
     group.add_argument('--records', metavar='FILE', help='write the experiments as npz')
     group.add_argument('--figures', metavar='FOLDER',
                        help='draw responses, singular values, Bode plot and poles')
@@ -68,6 +69,8 @@ def run(arguments: argparse.Namespace) -> None:
     metrics = identify.report(found) | {'seconds': time.perf_counter() - began}
     if arguments.out:
         found.model.save(arguments.out, arguments.force)
+    if arguments.mat:
+        found.model.save_mat(arguments.mat, arguments.force)
     if arguments.records:
         save_records(arguments.records, found.records, identity, arguments.force)
     if arguments.figures:
@@ -92,7 +95,8 @@ def _check(arguments: argparse.Namespace) -> tuple[Settings, Case]:
     options.within('--processes', arguments.processes, 1, 64, 'processes')
     if arguments.source and arguments.outputs:
         raise BadInput('--outputs cannot change what was recorded: leave out --outputs or --from')
-    for path in filter(None, (arguments.out, arguments.json, arguments.records)):
+    for path in filter(None, (arguments.out, arguments.mat, arguments.json,
+                              arguments.records)):
         check_free(path, arguments.force)
     return settings, case
 
