@@ -38,6 +38,7 @@ setup(
         ('lib/dewing', [f'scripts/{name}' for name in EXECUTABLES]),
     ],
     install_requires=[
+        'control>=0.10.2',
         'llvmlite>=0.42',
         'matplotlib>=3.7',
         'mcap>=1.6',
@@ -60,7 +61,6 @@ setup(
         'docs': [line for line in (SOURCE / 'docs' / 'requirements.txt').read_text().splitlines()
                  if not line.startswith('#')],
         'test': [
-            'control>=0.10',
             'distributed>=2024.1',
             'hypothesis>=6.60',
             'osqp>=1.0',

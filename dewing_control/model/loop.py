@@ -1,8 +1,15 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""A linear loop of a compensator and the design model: stability, sensitivity and margins."""
+"""A linear loop of a compensator and the design model: stability, sensitivity and margins.
+
+Poles, responses and Ms are computed here, because a search judges thousands of loops and
+`control.feedback` with the response of its result takes 8 ms for what takes 0.3 ms on bare
+matrices (they agree to 1e-13). Margins of the loop that is reported come from python-control.
+"""
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.integrate import trapezoid
@@ -10,34 +17,53 @@ from scipy.integrate import trapezoid
 from dewing_control.model.design import Design
 from dewing_sim.state_space import Matrices, frequency_response
 
+if TYPE_CHECKING:
+    from control import StateSpace
+
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """The loop L = G C at frequencies up to the Nyquist frequency."""
+    """The loop L = G C of ``design`` and ``compensator`` at frequencies up to Nyquist's."""
 
-    frequency: np.ndarray           # Hz, (m,)
-    plant: np.ndarray               # G, complex (m,)
-    control: np.ndarray             # C, complex (m,)
-    poles: np.ndarray               # of the closed loop
+    design: Design                  # G, from w to the camber
+    compensator: Matrices           # C, from the error r - a to w
 
     @classmethod
-    def of(cls, design: Design, compensator: Matrices) -> 'Loop':
+    def of(cls, design: Design, compensator: 'Matrices | StateSpace') -> 'Loop':
         """Return the loop of ``compensator``, from the error r - a to w, around ``design``."""
-        frequency, plant = design.spectrum
-        return cls(frequency, plant, frequency_response(compensator, frequency, design.dt)[0],
-                   np.linalg.eigvals(closed_matrix(design, compensator)))
+        return cls(design, Matrices.of(compensator))
+
+    @property
+    def frequency(self) -> np.ndarray:
+        """Frequencies in Hz, (m,), fine about the modes of the model."""
+        return self.design.spectrum[0]
+
+    @property
+    def plant(self) -> np.ndarray:
+        """G, complex (m,)."""
+        return self.design.spectrum[1]
+
+    @cached_property
+    def control(self) -> np.ndarray:
+        """C, complex (m,)."""
+        return frequency_response(self.compensator, self.frequency, self.design.dt)[0]
+
+    @cached_property
+    def poles(self) -> np.ndarray:
+        """Return the poles of the closed loop."""
+        return np.linalg.eigvals(closed_matrix(self.design, self.compensator))
 
     @property
     def stable(self) -> bool:
         """Return whether every pole of the closed loop lies inside the unit circle."""
         return bool(np.abs(self.poles).max() < 1.0)
 
-    @property
+    @cached_property
     def gain(self) -> np.ndarray:
         """L, complex (m,)."""
         return self.plant * self.control
 
-    @property
+    @cached_property
     def sensitivity(self) -> np.ndarray:
         """S = 1/(1 + L), complex (m,)."""
         return 1.0 / (1.0 + self.gain)
@@ -53,17 +79,31 @@ class Loop:
         power = np.abs(self.control * self.sensitivity)**2
         return float(np.sqrt(trapezoid(power, self.frequency) / self.frequency[-1]))
 
-    def gain_margin_db(self) -> float:
-        """Return the least change of gain, up or down, that makes the loop unstable."""
-        margins = np.abs(_crossings(self.gain, self.gain.imag, lambda point: point.real < 0.0))
-        decibels = np.abs(20.0 * np.log10(margins[margins > 0.0]))
-        return float(decibels.min()) if decibels.size else np.inf
+    def to_control(self) -> 'StateSpace':
+        """Return L as a `control.StateSpace`, for Bode, Nyquist, feedback and step responses."""
+        return self.design.to_control() * self.compensator.to_control(
+            self.design.dt, inputs=['error'], outputs=['w'], name='compensator')
 
-    def phase_margin_deg(self) -> float:
-        """Return the least phase shift, of either sign, that makes the loop unstable."""
-        points = _crossings(self.gain, np.abs(self.gain) - 1.0, lambda point: True)
-        margins = np.abs(np.degrees(np.angle(-points)))
-        return float(margins.min()) if margins.size else 180.0
+    @cached_property
+    def margins(self) -> tuple[float, float]:
+        """Gain margin in dB and phase margin in degrees of `control.stability_margins`.
+
+        They are the least changes, up or down, that make the loop unstable; infinite and 180 where
+        none does. They are read off the response: from the polynomials of a lightly damped model
+        it finds 21 degrees for 45.
+        """
+        from control import FrequencyResponseData, stability_margins
+        gain, phase = stability_margins(FrequencyResponseData(
+            self.gain, 2.0 * np.pi * self.frequency, smooth=True))[:2]
+        return (float(abs(20.0 * np.log10(gain))) if 0.0 < gain < np.inf else np.inf,
+                float(min(abs(phase), 180.0)))
+
+    @cached_property
+    def disk_margins(self) -> tuple[float, float]:
+        """Gain (dB) and phase (deg) that may change at once, of `control.disk_margins`."""
+        from control import disk_margins
+        _, gain, phase = disk_margins(self.to_control(), 2.0 * np.pi * self.frequency)
+        return float(gain), float(phase)
 
 
 def sensitivity_at(design: Design, compensator: Matrices, frequency: float) -> complex:
@@ -78,14 +118,3 @@ def closed_matrix(design: Design, compensator: Matrices) -> np.ndarray:
     d, c = float(compensator.d[0, 0]), design.c
     return np.block([[design.a - d * np.outer(design.b, c), np.outer(design.b, compensator.c)],
                      [-np.outer(compensator.b, c), compensator.a]])
-
-
-def _crossings(gain: np.ndarray, signal: np.ndarray, wanted) -> np.ndarray:
-    """Return L, interpolated, where the real ``signal`` changes sign."""
-    found = []
-    for k in np.flatnonzero(signal[:-1] * signal[1:] < 0.0):
-        share = signal[k] / (signal[k] - signal[k + 1])
-        point = gain[k] + share * (gain[k + 1] - gain[k])
-        if wanted(point):
-            found.append(point)
-    return np.array(found, dtype=complex)

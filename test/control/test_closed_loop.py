@@ -2,15 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The offline loop on the reduced wing: target, disturbance, zero saturation, reproducibility."""
 
+import control
 import numpy as np
 import pytest
 from reduced_wing import CAMBER, SLACK, first_mode
 
+from dewing_control.model.design import Design
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial.closed_loop import closed_loop, controller
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity, loss_of_tension
+from dewing_sim.model import Model
+from dewing_sim.reduced import Reduced
 
 
 def identity_of(plant):
@@ -39,6 +43,24 @@ def test_zero_saturation_binds_below_the_passive_camber():
     camber, v_squared = run(changes={'reference.target': 0.90}, disturbance=0.0)
     assert np.all(v_squared[-1000:] == 0.0)
     assert camber[-1] == pytest.approx(1.0, abs=1.0e-3)
+
+
+def test_a_state_space_of_python_control_becomes_a_plant_and_flies():
+    """A mode and a lag from a textbook, sampled by python-control, under LQG designed on it."""
+    omega, damping = 2.0 * np.pi * 70.0, 0.05
+    mode = control.tf([0.9 * CAMBER * omega**2], [1.0, 2.0 * damping * omega, omega**2])
+    lag = control.tf([0.1 * CAMBER], [2.0e-3, 1.0])
+    camber = control.sample_system(control.ss(mode + lag) / SLACK, 1.0e-4)
+    both = control.ss([], [], [], [[1.0], [1.5]], 1.0e-4)
+    model = Model.of_control(both * camber, output_names=('camber_mean', 'camber_max'),
+                             operating_outputs=CAMBER * np.array([1.0, 1.5]),
+                             v_squared_slack=SLACK, v_squared_max=1250.0**2)
+    plant = Reduced(model, disturbance=-0.05 * model.operating_outputs, disturbance_frequency=10.0)
+    law = controller(parameters.load('controller', ControllerSettings, {'kind': 'lqg'}),
+                     identity_of(plant), Design.of(model, 'camber_mean'))
+    late = [outputs.camber_mean / CAMBER
+            for _, outputs in closed_loop(plant, plant.rest(), law, 3000)][-1000:]
+    assert np.mean(late) == pytest.approx(1.10, abs=1.0e-4) and np.ptp(late) < 1.0e-3
 
 
 def test_two_runs_agree_bit_for_bit():

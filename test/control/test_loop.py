@@ -10,10 +10,12 @@ import pytest
 from identified_wing import design_model, identity, reduced_model
 from loops import mode, pid
 
+from dewing_control.law.lqg import regulator
 from dewing_control.law.registry import law
 from dewing_control.model.design import Design, load
 from dewing_control.model.loop import Loop, closed_matrix, sensitivity_at
 from dewing_control.settings import ControllerSettings
+from dewing_control.tuning.judge import step_error
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.state_space import Matrices, frequency_response
@@ -51,18 +53,70 @@ def test_closed_loop_and_margins_agree_with_python_control(kind):
     np.testing.assert_allclose(measured, np.squeeze(expected), rtol=1.0e-6)
 
 
-def test_margins_of_a_pure_integrator():
-    """L = k/(z - 1) turns unstable at k = 2; Ms and phase margin from |1 + L| by hand."""
-    gain, dt = 0.5, 1.0e-3
-    frequency = np.geomspace(0.1, 500.0, 4000)
-    z = np.exp(2j * np.pi * frequency * dt)
-    loop = Loop(frequency, gain / (z - 1.0), np.ones_like(z), np.array([1.0 - gain]))
-    assert loop.stable
-    assert loop.gain_margin_db() == np.inf or loop.gain_margin_db() == pytest.approx(
-        20.0 * np.log10(2.0 / gain), abs=0.2)
+def delayed_integrator(gain, dt=1.0e-3):
+    """Return the loop L = k/(z (z - 1)), whose delay a compensator brings."""
+    return Loop.of(Design.normalised(np.eye(1), np.array([gain]), np.ones(1), dt, 0.0),
+                   control.ss(0.0, 1.0, 1.0, 0.0, dt))
+
+
+def test_margins_of_a_delayed_integrator():
+    """At z = exp(iw): arg L = -pi/2 - 3 w/2, |L| = k / 2 sin(w/2), so that k_max = 1 at pi/3."""
+    gain = 0.5
+    loop = delayed_integrator(gain)
+    assert loop.stable and not delayed_integrator(1.01).stable
     crossing = 2.0 * np.arcsin(gain / 2.0)
-    assert loop.phase_margin_deg() == pytest.approx(90.0 - np.degrees(crossing) / 2.0, abs=0.1)
-    assert loop.peak == pytest.approx(2.0 / (2.0 - gain), rel=1.0e-3)
+    assert loop.margins == pytest.approx(
+        (20.0 * np.log10(1.0 / gain), 90.0 - np.degrees(1.5 * crossing)), rel=1.0e-4)
+    z = np.exp(2j * np.pi * loop.frequency * 1.0e-3)
+    by_hand = np.abs(1.0 / (1.0 + gain / (z * (z - 1.0)))).max()
+    assert loop.peak == pytest.approx(by_hand, rel=1.0e-9)
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_margins_are_those_of_python_control(kind):
+    """Also of the state space itself, sampled as finely as our response, and by Ms for disks."""
+    model = design_model()
+    loop = Loop.of(model, law(settings(kind), identity(), model).compensator())
+    gain, phase, least, *_ = control.stability_margins(loop.to_control(), method='frd')
+    assert loop.margins == pytest.approx((abs(20.0 * np.log10(gain)), phase), rel=1.0e-4)
+    assert 1.0 / loop.peak == pytest.approx(least, rel=1.0e-4)      # ours is on a grid
+    disk = 1.0 / np.abs(loop.sensitivity - 0.5).max()
+    assert loop.disk_margins == pytest.approx((
+        20.0 * np.log10((1.0 + disk / 2.0) / (1.0 - disk / 2.0)),
+        2.0 * np.degrees(np.arctan(disk / 2.0))), rel=1.0e-9)
+    assert loop.disk_margins[0] <= loop.margins[0] and loop.disk_margins[1] <= loop.margins[1]
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_sensitivity_and_step_are_those_of_python_control(kind):
+    model = design_model()
+    loop = Loop.of(model, law(settings(kind), identity(), model).compensator())
+    sensitivity = control.feedback(1, loop.to_control())
+    points = loop.frequency[::40]
+    np.testing.assert_allclose(loop.sensitivity[::40],
+                               sensitivity(np.exp(2j * np.pi * points * model.dt)), atol=1.0e-9)
+    error = step_error(model, loop.compensator)
+    response = control.step_response(sensitivity, model.dt * np.arange(error.size))
+    np.testing.assert_allclose(error, response.outputs, atol=1.0e-9)
+
+
+def test_regulator_and_filter_are_those_of_python_control():
+    """Riccati solutions come from scipy, as those of `dlqr` do, without its 1.2 s of import."""
+    base = law(settings('lqg'), identity(), design_model())
+    observer, weights = base.observer, settings('lqg')
+    model = observer.design
+    gain, cost, _ = control.dlqr(model.a, model.b[:, None], np.outer(model.c, model.c),
+                                 [[weights.lqg.control_weight]])
+    np.testing.assert_allclose(base.feedback, gain[0], rtol=1.0e-9)
+    np.testing.assert_allclose(regulator(model, weights.lqg.control_weight)[1], cost, rtol=1.0e-9)
+    noise = weights.estimator
+    drive = np.zeros((observer.inlet.size, observer.inlet.size))
+    drive[:model.order, :model.order] = noise.load_noise**2 * np.outer(model.b, model.b)
+    drive[model.order:, model.order:] = np.diag(
+        [noise.drift**2, *[noise.oscillation**2] * (observer.inlet.size - model.order - 1)])
+    kalman, *_ = control.dlqe(observer.transition, np.eye(len(drive)), observer.outlet[None],
+                              drive, [[noise.sensor_noise**2]])
+    np.testing.assert_allclose(observer.transition @ observer.gain, kalman[:, 0], rtol=1.0e-6)
 
 
 def test_closed_matrix_is_the_loop_stepped_by_hand():

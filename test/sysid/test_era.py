@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """ERA and OKID on systems whose answer is known."""
 
+import control
 import numpy as np
 import pytest
 from scipy import linalg
@@ -100,7 +101,6 @@ def test_a_long_record_is_thinned_by_itself():
 
 
 def test_agreement_with_python_control():
-    control = pytest.importorskip('control')
     h = markov_parameters(*random_stable(5, 8, 1, 1), 61)
     ours, theirs = era.era(h, 4), control.eigensys_realization(h, 4, m=30, n=30)[0]
     assert np.allclose(np.sort_complex(np.linalg.eigvals(ours.a)), np.sort_complex(theirs.poles()))
