@@ -97,11 +97,13 @@ class Model:
     def modes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return natural frequency (Hz) and damping ratio of each pole, pairs once, ascending.
 
-        s = log(z) / dt, f = |s| / 2 pi, zeta = -Re(s) / |s|; poles at z = 0 are delays, not modes,
-        and left out.
+        s = log(z) / dt, f = |s| / 2 pi, zeta = -Re(s) / |s|. Poles whose f is not below the
+        Nyquist frequency are no modes and left out: those about z = 0, which are delays, and those
+        on the negative real axis, which no s describes.
         """
         poles = self.poles.astype(complex)
-        s = np.log(poles[(poles.imag >= 0.0) & (np.abs(poles) > 1.0e-6)]) / self.dt
+        s = np.log(poles[(poles.imag >= 0.0) & (poles != 0.0)]) / self.dt
+        s = s[np.abs(s) * self.dt < np.pi]
         modulus = np.abs(s)
         damping = np.divide(-s.real, modulus, out=np.zeros_like(modulus), where=modulus > 0.0)
         ascending = np.argsort(modulus)
@@ -166,18 +168,16 @@ class Model:
                     input_unit=self.input_unit)
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
-        """Write the npz file that `load` and the reduced plant read, or a mat file for MATLAB.
-
-        The suffix ``.mat`` chooses; names and units are cell arrays there.
-        """
+        """Write the npz file that `load` and the reduced plant read."""
         with new_file(path, overwrite) as file:
-            if Path(path).suffix == '.mat':
-                from scipy.io import savemat
-                savemat(file, self.arrays() | {
-                    name: np.array(getattr(self, name), object)
-                    for name in ('output_names', 'units')}, oned_as='column')
-            else:
-                np.savez(file, **self.arrays())
+            np.savez(file, **self.arrays())
+
+    def save_mat(self, path: str | Path, overwrite: bool = False) -> None:
+        """Write a mat file (version 5) for MATLAB; names and units are cell arrays."""
+        from scipy.io import savemat
+        cells = {name: np.array(getattr(self, name), object) for name in ('output_names', 'units')}
+        with new_file(path, overwrite) as file:
+            savemat(file, self.arrays() | cells, oned_as='column')
 
     @classmethod
     def load(cls, path: str | Path) -> 'Model':

@@ -107,10 +107,31 @@ def test_compensators_may_be_systems_of_python_control():
     assert frequency_response(matrices, [0.0], 0.1)[0, 0] == pytest.approx(13.0)
 
 
+@pytest.mark.parametrize('delays', [0, 1, 4, 9])
+def test_delays_are_no_modes(delays):
+    """Rounding scatters n poles at z = 0 over a circle of radius eps^(1/n)."""
+    delay = control.ss(np.eye(delays, k=-1), np.eye(delays, 1), np.eye(delays)[-1:], 0.0, 1.0e-4) \
+        if delays else control.ss([], [], [], 1.0, 1.0e-4)
+    twist = np.random.default_rng(3).standard_normal((2 + delays, 2 + delays))
+    system = control.similarity_transform(first_mode().model.to_control() * delay, twist)
+    late = Model.of_control(system, like=model())
+    assert late.order == 2 + delays
+    frequency, damping = late.modes()
+    assert frequency == pytest.approx([72.0], rel=1.0e-6)
+    assert damping == pytest.approx([0.08], rel=1.0e-6)
+
+
+def test_a_pole_that_alternates_is_no_mode_and_a_lag_is_one():
+    poles = control.ss(np.diag([-0.3, 0.9]), np.ones((2, 1)), np.ones((1, 2)), 0.0, 1.0e-4)
+    frequency, damping = Model.of_control(poles, **BESIDE).modes()
+    assert frequency == pytest.approx([-np.log(0.9) / (2.0e-4 * np.pi)])
+    assert damping == pytest.approx([1.0])
+
+
 def test_matlab_finds_matrices_names_and_units(tmp_path):
-    model().save(tmp_path / 'model.mat')
+    model().save_mat(tmp_path / 'model.mat')
     with pytest.raises(BadInput, match='exists'):
-        model().save(tmp_path / 'model.mat')
+        model().save_mat(tmp_path / 'model.mat')
     read = io.loadmat(tmp_path / 'model.mat', simplify_cells=True)
     for name, expected in zip('ABCD', model().matrices):
         assert np.array_equal(np.reshape(read[name], expected.shape), expected)
