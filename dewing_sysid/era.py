@@ -6,7 +6,6 @@ Conventions: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k]; Markov parameters
 h[k] = C A^(k-1) B, stored with shape (outputs, inputs, samples); rows of signals are channels.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,19 +13,20 @@ from scipy import linalg
 
 from dewing_sim.errors import BadInput
 from dewing_sim.state_space import Matrices
+from dewing_sysid.hankel import Hankel, leading
 
 
 @dataclass(frozen=True)
 class HankelFactors:
     """The singular value decomposition H0 = U S V^T of paper eq. 8 and the shifted H1.
 
-    Realisations of every order follow from one decomposition.
+    Realisations of every order up to its rank follow from one decomposition.
     """
 
     left: np.ndarray                    # U, (outputs rows, rank)
     singular_values: np.ndarray         # diagonal of S, descending
     right: np.ndarray                   # V^T, (rank, inputs columns)
-    shifted: np.ndarray                 # H1
+    shifted: np.ndarray | Hankel        # H1
     direct: np.ndarray                  # D, (outputs, inputs)
     scale: np.ndarray                   # by which each output was divided, (outputs,)
 
@@ -54,18 +54,19 @@ class HankelFactors:
         return Matrices(a, b, c, self.direct)
 
 
-LARGEST = 150                           # block rows and columns that decompose in some 20 ms
+LARGEST = 150                           # block rows and columns decomposed as a whole
+LEADING = 30                            # singular values sought of larger matrices
 
 
-def factorise(markov: np.ndarray, rows: int | None = None, stride: int | None = None,
+def factorise(markov: np.ndarray, rows: int | None = None, states: int = LEADING,
               ) -> HankelFactors:
     """Decompose the Hankel matrix of ``markov`` (outputs, inputs, samples), h[0] = D first.
 
-    Block (i, j) is h[1 + stride (i + j)] in H0 and the sample after it in H1: observability
-    and controllability of A^stride, A itself between them, so that a long record fits into a
-    small matrix.  By default ``rows`` is half of what the record holds and ``stride`` the least
-    that keeps them below `LARGEST`.  Outputs are divided by their root mean square first, so
-    that metres and lift coefficients weigh alike in the truncation.
+    Block (i, j) is h[1 + i + j] in H0 and the sample after it in H1; ``rows`` is half of what the
+    record holds by default. Up to `LARGEST` block rows and columns all singular values are
+    computed, of larger matrices the leading ``states``, which takes some 10 ms for 1000 samples.
+    Outputs are divided by their root mean square first, so that metres and lift coefficients
+    weigh alike in the truncation.
     Raises `BadInput` for a record that is too short, not finite or without response.
     """
     h = np.asarray(markov, dtype=float)
@@ -73,35 +74,28 @@ def factorise(markov: np.ndarray, rows: int | None = None, stride: int | None = 
         raise BadInput(f'Markov parameters of shape {h.shape}: expected (outputs, inputs, '
                        'samples)')
     samples = h.shape[2]
-    stride = max(1, math.ceil((samples - 1) / (2 * LARGEST))) if stride is None else stride
-    blocks = (samples - 3) // stride + 2
+    blocks = samples - 1
     rows = blocks // 2 if rows is None else rows
     columns = blocks - rows
     if rows < 1 or columns < 1:
         raise BadInput(f'{samples} samples do not fill a Hankel matrix of {max(rows, 1)} block '
-                       f'rows: at least {(max(rows, 1) - 1) * stride + 3} are needed')
+                       f'rows: at least {max(rows, 1) + 2} are needed')
     if not np.isfinite(h).all():
         raise BadInput('Markov parameters contain values that are not finite')
     scale = np.sqrt(np.mean(h[:, :, 1:]**2, axis=(1, 2)))
     if not scale.all():
         raise BadInput(f'output {int(np.argmin(scale))} is constant: nothing to identify')
     scaled = h / scale[:, None, None]
-    left, singular_values, right = linalg.svd(
-        _hankel(scaled[:, :, 1:-1], rows, columns, stride), full_matrices=False)
-    return HankelFactors(left, singular_values, right,
-                         _hankel(scaled[:, :, 2:], rows, columns, stride), h[:, :, 0], scale)
-
-
-def _hankel(h: np.ndarray, rows: int, columns: int, stride: int) -> np.ndarray:
-    """Return the block Hankel matrix with block (i, j) = h[stride (i + j)]."""
-    outputs, inputs, _ = h.shape
-    blocks = h[:, :, stride * np.add.outer(np.arange(rows), np.arange(columns))]
-    return blocks.transpose(2, 0, 3, 1).reshape(rows * outputs, columns * inputs)
+    first, shifted = (Hankel(scaled[:, :, begin:], rows, columns) for begin in (1, 2))
+    if blocks > 2 * LARGEST:
+        return HankelFactors(*leading(first, states), shifted, h[:, :, 0], scale)
+    return HankelFactors(*linalg.svd(first.dense(), full_matrices=False), shifted.dense(),
+                         h[:, :, 0], scale)
 
 
 def era(markov: np.ndarray, order: int, rows: int | None = None) -> Matrices:
     """Return the ERA model of ``order`` states; see `factorise` and `HankelFactors.realise`."""
-    return factorise(markov, rows).realise(order)
+    return factorise(markov, rows, max(LEADING, order)).realise(order)
 
 
 def delayed(realisation: Matrices) -> Matrices:

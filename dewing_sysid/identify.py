@@ -94,7 +94,8 @@ def factorise(record: Record, settings: Settings, length: int) -> era.HankelFact
     With ``at_once: state`` it begins one sample later, and `realise` adds the first.
     """
     h = markov(record, settings.realisation.lags, length)
-    return era.factorise(h[:, :, 1:] if settings.realisation.at_once == 'state' else h)
+    return era.factorise(h[:, :, 1:] if settings.realisation.at_once == 'state' else h,
+                         states=max(era.LEADING, 2 * settings.realisation.order))
 
 
 def realise(factors: era.HankelFactors, chosen: Realisation, order: int) -> Matrices:
