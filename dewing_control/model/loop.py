@@ -102,7 +102,9 @@ class Loop:
     def disk_margins(self) -> tuple[float, float]:
         """Gain (dB) and phase (deg) that may change at once, of `control.disk_margins`."""
         from control import disk_margins
-        _, gain, phase = disk_margins(self.to_control(), 2.0 * np.pi * self.frequency)
+        below = np.pi / self.design.dt * (1.0 - 1.0e-12)       # a warning follows above Nyquist
+        _, gain, phase = disk_margins(self.to_control(),
+                                      np.minimum(2.0 * np.pi * self.frequency, below))
         return float(gain), float(phase)
 
 
