@@ -46,12 +46,12 @@ def fails(capsys, *arguments) -> str:
 
 
 def test_recorded_experiments_give_model_metrics_and_figures(recorded):
-    assert cli.main(['identify', '--from', 'records.npz', '--order', '9', '--out', 'model.npz',
+    assert cli.main(['identify', '--from', 'records.npz', '--order', '8', '--out', 'model.npz',
                      '--mat', 'model.mat',
                      '--json', 'metrics.json', '--figures', 'figures', '--quiet']) == 0
     metrics = json.loads(Path('metrics.json').read_text())
     assert set(metrics) >= KEYS
-    assert metrics['order'] == 9
+    assert metrics['order'] == 8
     assert metrics['fit']['camber_mean'] > 99.9 and metrics['fit_fresh']['cl'] > 99.9
     assert Model.load('model.npz').fit['window'] == metrics['fit']
     assert np.array_equal(io.loadmat('model.mat')['A'], Model.load('model.npz').a)
