@@ -64,6 +64,7 @@ setup(
             'distributed>=2024.1',
             'hypothesis>=6.60',
             'osqp>=1.0',
+            'pandas>=2.0',
             'pytest>=7.4',
             'pytest-timeout>=2.1',
             'xarray>=2024.1',

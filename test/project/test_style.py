@@ -12,7 +12,7 @@ PROJECT = Path(__file__).parents[2]
 HEADER = ('# Copyright 2026 The dewing authors\n'
           '# SPDX-License-Identifier: Apache-2.0\n')
 FOLDERS = ('config', 'dewing_cli', 'dewing_control', 'dewing_sim', 'dewing_sysid', 'docs',
-           'scripts', 'test')
+           'examples', 'scripts', 'test')
 PYTHON = sorted(path.relative_to(PROJECT) for folder in FOLDERS
                 for path in (PROJECT / folder).rglob('*.py'))
 MODULES = [path for path in PYTHON if path.parts[0].startswith('dewing_')]
