@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from dewing_sim import parameters, reduced
-from dewing_sim.errors import BadInput
+from dewing_sim import parameters, plugins, reduced
+from dewing_sim.errors import BadInput, DewingError
 from dewing_sim.fluid.base import Monitor
 from dewing_sim.identity import Identity
 from dewing_sim.parameters import Case
@@ -39,6 +39,8 @@ def build(settings: SimulatorSettings, case: Case, progress=None) -> Built:
     """
     if settings.run.plant == 'wing':
         return build_wing(case, progress)
+    if plugins.is_plugin(settings.run.plant):
+        return build_foreign(settings.run.plant, case)
     if not settings.model:
         raise BadInput('model is empty: the reduced plant needs the npz file of its matrices')
     return build_reduced(settings.model)
@@ -73,3 +75,29 @@ def build_reduced(model: str) -> Built:
     identity = Identity.of('reduced', plant, rest, plant.v_squared_max, case)
     return Built(plant, rest, identity, plant.save, plant.load,
                  lambda _: Monitor(0.0, 0.0, 0.0), lambda _: '')
+
+
+def build_foreign(word: str, case: Case) -> Built:
+    """Return the plant that ``package.module:Name`` makes of ``case``.
+
+    Besides what `Plant` says it has ``v_squared_slack``, the V^2 at the loss of tension, and, if
+    its states may be kept, ``save(path, state)`` and ``load(path)``. Raises `BadInput` if it
+    cannot be made, or is no plant.
+    """
+    make = plugins.load(word, 'run.plant')
+    try:
+        plant = make(case)
+        rest = plant.rest()
+        identity = Identity.of(word, plant, rest, case.actuation.voltage_limit**2,
+                               parameters.to_mapping(case))
+    except DewingError:
+        raise
+    except Exception as error:          # whatever a foreign plant raises
+        raise BadInput(f'run.plant = {word!r} cannot be built '
+                       f'({type(error).__name__}: {error})') from error
+
+    def refuse(path: str, state: Any = None) -> Any:
+        raise BadInput(f'{path}: the plant {word} does not keep its states')
+
+    return Built(plant, rest, identity, getattr(plant, 'save', refuse),
+                 getattr(plant, 'load', refuse), lambda _: Monitor(0.0, 0.0, 0.0), lambda _: '')

@@ -11,7 +11,7 @@ from dewing_sim.parameters import choice, count, real, text
 class Run:
     """How the simulator keeps step; time-outs are in wall time, rates in simulated time."""
 
-    plant: str = choice('what is simulated', 'wing', 'reduced')
+    plant: str = choice('what is simulated', 'wing', 'reduced', open=True)
     mode: str = choice(
         'wait for the command that answers each measurement, or step on with the last one, '
         'paced or as fast as it goes', 'lockstep', 'realtime', 'free')

@@ -79,10 +79,16 @@ def make(settings: Settings, identity: Identity, names: Sequence[str] | None = N
     inputs[BASELINE] = np.full(max(length, fresh_length), rest)
     for name, v_squared in inputs.items():
         _check_voltage(name, v_squared, identity)
-    names = names or (MODAL if settings.realisation.outputs == 'modal' else STANDARD)
+    names = names or named(settings.realisation.outputs)
     for name in names:
         unit(name, identity)
     return Plan(dt, rest, tuple(names), inputs)
+
+
+def named(outputs: str) -> tuple[str, ...]:
+    """Return the names of `realisation.outputs`."""
+    known = {'standard': STANDARD, 'modal': MODAL}
+    return known.get(outputs) or tuple(name.strip() for name in outputs.split(','))
 
 
 def _shape(settings: Settings, length: int, dt: float) -> np.ndarray:

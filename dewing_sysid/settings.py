@@ -44,7 +44,7 @@ class Realisation:
                           'to the Hankel matrix as in the paper', 'state', 'hankel')
     lags: int = count('observer lags for experiments other than pulse', 1, 10000)
     unstable_poles: str = choice('what is done to unstable poles', 'keep', 'reflect')
-    outputs: str = choice('identified outputs', 'standard', 'modal')
+    outputs: str = text('identified outputs: standard, modal, or names with commas between')
 
 
 @dataclass(frozen=True)

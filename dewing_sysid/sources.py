@@ -10,6 +10,8 @@ import numpy as np
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
 from dewing_sim.lockstep import nanoseconds
+from dewing_sim.plant import Outputs
+from dewing_sim.quantities import schema
 from dewing_sim.records import bag
 from dewing_sysid.experiment import STANDARD, Record, load_records
 from dewing_sysid.plan import BASELINE, EXPERIMENT, FRESH, HALF, SWEEP, case_of
@@ -28,11 +30,11 @@ def from_bag(path: str | Path) -> tuple[dict[str, Record], Identity]:
 
     Runs are told by their V^2: constant is the baseline (the first sample where there is none),
     the first other one the experiment, half its deviation the linearity check, one of two levels
-    the fresh binary sequence, any other the sweep.  Raises `BadInput` if messages are missing.
+    the fresh binary sequence, any other the sweep.  The outputs are those of `STANDARD` that were
+    measured, and any that are not dewing's own.  Raises `BadInput` if messages are missing.
     """
-    identity = _identity(path)
-    measured = _runs(path, 'measurement', lambda message: [
-        dict(zip(message.name, message.position))[name] for name in STANDARD])
+    identity, names = _identity(path), _names(path)
+    measured = _runs(path, 'measurement', lambda message: _row(path, message, names))
     commanded = _runs(path, 'command', lambda message: message.effort[0])
     if len(measured) != len(commanded):
         raise BadInput(f'{path}: {len(measured)} runs of measurements do not fit '
@@ -41,7 +43,7 @@ def from_bag(path: str | Path) -> tuple[dict[str, Record], Identity]:
     runs = _named([_aligned(path, identity.dt, *pair) for pair in zip(measured, commanded)], rest)
     if EXPERIMENT not in runs:
         raise BadInput(f'{path}: V^2 never changes, there is no experiment in it')
-    return {name: _record(v_squared, outputs, runs.get(BASELINE), identity.dt, rest)
+    return {name: _record(v_squared, outputs, runs.get(BASELINE), identity.dt, rest, names)
             for name, (v_squared, outputs) in runs.items() if name != BASELINE}, identity
 
 
@@ -49,6 +51,22 @@ def _identity(path: str | Path) -> Identity:
     for _, _, message in bag.read(path, f'{NAMESPACE}/case'):
         return Identity.from_yaml(message.data)
     raise BadInput(f'{path}: no message on {NAMESPACE}/case says which plant it is')
+
+
+def _names(path: str | Path) -> tuple[str, ...]:
+    for _, _, message in bag.read(path, f'{NAMESPACE}/measurement'):
+        own = schema(Outputs).names
+        return (*(name for name in STANDARD if name in message.name),
+                *(name for name in message.name if name not in own))
+    raise BadInput(f'{path}: no messages on {NAMESPACE}/measurement')
+
+
+def _row(path: str | Path, message: Any, names: tuple[str, ...]) -> list[float]:
+    values = dict(zip(message.name, message.position))
+    if not names or not values.keys() >= set(names):
+        raise BadInput(f'{path}: a measurement has {", ".join(values)}, '
+                       f'wanted are {", ".join(names or STANDARD)}')
+    return [values[name] for name in names]
 
 
 def _runs(path: str | Path, topic: str, value) -> list[dict[int, Any]]:
@@ -95,7 +113,7 @@ def _named(runs: list[Run], rest: float) -> dict[str, Run]:
 
 
 def _record(v_squared: np.ndarray, outputs: np.ndarray, baseline: Run | None, dt: float,
-            rest: float) -> Record:
+            rest: float, names: tuple[str, ...]) -> Record:
     still = np.repeat(outputs[:, :1], outputs.shape[1], axis=1) if baseline is None else (
         baseline[1][:, :outputs.shape[1]])
-    return Record(dt, v_squared, outputs, still, rest, STANDARD)
+    return Record(dt, v_squared, outputs, still, rest, names)

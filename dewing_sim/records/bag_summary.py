@@ -66,6 +66,9 @@ def draw(path: str | Path, out: str | Path, overwrite: bool = False) -> dict[str
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     series = bag.series(path, '/dewing/measurement')
+    if not {'camber_mean', 'v_squared'} <= series.keys():
+        raise BadInput(f'{path}: the plant measured {", ".join(series)}; camber_mean and '
+                       'v_squared are drawn')
     voltage = np.sqrt(series['v_squared'])
     figure = Figure(figsize=(7.0, 5.0), layout='constrained')
     FigureCanvasAgg(figure)
