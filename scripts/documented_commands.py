@@ -50,7 +50,7 @@ LONG_IN_TEXT = (
     'make help', 'make venv', 'make docs', 'make bench', 'make bench-peers', 'make test',
     "make test PYTEST_OPTIONS='-m \"not slow\"'",
     'python scripts/gallery.py', 'python scripts/parameter_table.py',
-    'python scripts/ros_reference.py',
+    'python scripts/ros_reference.py', 'python scripts/outputs_table.py',
     'python benchmarks/roundtrip.py', 'python benchmarks/soak.py',
     'dewing plate --alpha 4', 'dewing simulate --case paper', 'dewing verify --quick',
     'dewing verify --out docs --force', 'dewing material --coupled',

@@ -7,6 +7,8 @@ import runpy
 from pathlib import Path
 
 from dewing_cli import main as cli
+from dewing_sim.plant import Outputs
+from dewing_sim.quantities import schema
 
 PROJECT = Path(__file__).parents[2]
 README = (PROJECT / 'README.md').read_text()
@@ -32,6 +34,7 @@ def test_every_published_topic_is_listed():
     sources = ''.join((PROJECT / path).read_text() for path in (
         'dewing_sim/ros/node.py', 'dewing_sim/ros/telemetry.py', 'dewing_control/node.py'))
     topics = re.findall(r"create_publisher\(\w+, '(/?\w+)'", sources)
-    topics += re.findall(r"channel\('(/?\w+)'", sources)
+    topics += re.findall(r"channel\(\s*'(/?\w+)'", sources)
+    topics += [each.topic for each in schema(Outputs).quantities if each.topic]
     listed = re.search(r'\| topic \|.*?\n\n', README, re.S).group()
     assert topics and all(f'`{topic}`' in listed for topic in topics)
