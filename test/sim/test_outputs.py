@@ -15,7 +15,8 @@ from std_msgs.msg import Float64
 from dewing_control.node import ControllerNode
 from dewing_sim import parameters, reduced
 from dewing_sim.build import build_foreign
-from dewing_sim.errors import BadInput
+from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.inputs.base import Inputs
 from dewing_sim.lockstep import LockStep
 from dewing_sim.model import Model
 from dewing_sim.plant import Measurement, Outputs, rollout
@@ -41,7 +42,8 @@ SHORT = {'experiment.record': 1.2, 'fresh.record': 1.2, 'realisation.window': 1.
 
 def run(steps=7):
     plant = Plant(CASE)
-    return [outputs for _, outputs in rollout(plant, plant.rest(), lambda _: 1.0e5, steps)]
+    return [outputs for _, outputs in rollout(plant, plant.rest(), lambda _: Inputs(1.0e5),
+                                              steps)]
 
 
 def test_its_outputs_are_columns_and_shapes_of_a_history_and_of_its_file(tmp_path):
@@ -70,7 +72,7 @@ def test_the_lock_step_watches_its_numbers():
     plant.observe = lambda state: dataclasses.replace(
         Plant.observe(plant, state), edge_slope=np.nan if state.step else 0.0)
     lockstep = LockStep(plant, plant.rest(), 1.0e6)
-    with pytest.raises(Exception, match='edge_slope = nan after step 1'):
+    with pytest.raises(Diverged, match='edge_slope = nan after step 1'):
         lockstep.advance(0.0)
 
 

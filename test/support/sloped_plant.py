@@ -48,10 +48,10 @@ class Plant:
     def rest(self):
         return State(0, 0.0, REST)
 
-    def step(self, state, v_squared):
-        target = REST + GAIN * v_squared
+    def step(self, state, inputs):
+        target = REST + GAIN * inputs.v_squared
         camber = target + (state.camber - target) * np.exp(-self.dt / LAG)
-        return State(state.step + 1, v_squared, float(camber))
+        return State(state.step + 1, inputs.v_squared, float(camber))
 
     def observe(self, state):
         slope = 4.0 * state.camber / self.chord
