@@ -32,6 +32,20 @@ def loop(figure, found):
     return above, below
 
 
+def own_disturbance(figure, found):
+    """Draw camber and lift after a knock and in a gust."""
+    above, below = figure.subplots(2, 1, sharex=True)
+    for (name, run), color in zip(found['runs'].items(), (BLUE, RED)):
+        above.plot(run.time, run.camber_mean / found['passive'].camber_mean, color=color,
+                   label=name)
+        below.plot(run.time, run.cl, color=color)
+    above.set_ylabel('camber over passive')
+    above.legend()
+    below.set_ylabel('lift coefficient')
+    below.set_xlabel('time (s)')
+    return above, below
+
+
 def own_material(figure, found):
     """Draw tension against stretch, from the sheets of both wings."""
     axes = figure.subplots()
@@ -99,7 +113,8 @@ def two_wings(figure, found):
     return axes,
 
 
-DRAWINGS = {'closed_loop': loop, 'own_controller': loop, 'own_material': own_material,
+DRAWINGS = {'closed_loop': loop, 'own_controller': loop,
+            'own_disturbance': own_disturbance, 'own_material': own_material,
             'pulse_to_bode': pulse_to_bode, 'read_bag': read_bag, 'sweep': sweep,
             'two_wings': two_wings}
 

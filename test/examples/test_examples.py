@@ -56,6 +56,26 @@ def test_own_controller(run):
     assert u == pytest.approx(1.0 - 1.0 / 1.2, rel=0.03)
 
 
+def test_own_disturbance(run):
+    """Nothing comes early; a knock rings at the first mode, a gust lifts at most quasi-steadily."""
+    found = run('own_disturbance')
+    knock, gust, passive = found['runs']['knock'], found['runs']['gust'], found['passive']
+    for run in (knock, gust):
+        before = run.time < found['BEGIN']
+        assert run.camber_mean[before] == pytest.approx(passive.camber_mean, rel=2.0e-3)
+    static = 0.05 / passive.cl                  # of the load that the wing carries
+    drop = 1.0 - knock.camber_mean.min() / passive.camber_mean
+    assert static < drop < 2.0 * static         # half a sine of one and a half periods
+    assert abs(knock.camber_mean[-1] / passive.camber_mean - 1.0) < 0.05 * drop
+    late = knock.since(found['BEGIN'] + 0.025)
+    ringing = late.camber_mean - late.camber_mean.mean()
+    up = np.flatnonzero((ringing[:-1] < 0.0) & (ringing[1:] >= 0.0))
+    assert (up.size - 1) / (late.time[up[-1]] - late.time[up[0]]) == pytest.approx(72.7, abs=1.5)
+    steady = 2.0 * np.pi * 0.01 / 1.21725       # 2 pi times the change of incidence
+    assert 0.5 * steady < gust.cl.max() - passive.cl < steady
+    assert gust.cl[-1] == pytest.approx(passive.cl, rel=0.01)
+
+
 def test_own_material(run):
     """Tension is 2 W' (l^2 - l^-2) h without compression; camber goes as its inverse."""
     found = run('own_material')
