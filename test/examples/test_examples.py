@@ -57,12 +57,12 @@ def test_own_controller(run):
 
 
 def test_own_disturbance(run):
-    """Nothing comes early; a knock rings at the first mode, a gust lifts at most quasi-steadily."""
+    """A knock rings at the first mode in air; a gust lifts no more than if it stood still."""
     found = run('own_disturbance')
     knock, gust, passive = found['runs']['knock'], found['runs']['gust'], found['passive']
-    for run in (knock, gust):
-        before = run.time < found['BEGIN']
-        assert run.camber_mean[before] == pytest.approx(passive.camber_mean, rel=2.0e-3)
+    for disturbed in (knock, gust):             # nothing comes early
+        before = disturbed.time < found['BEGIN']
+        assert disturbed.camber_mean[before] == pytest.approx(passive.camber_mean, rel=2.0e-3)
     static = 0.05 / passive.cl                  # of the load that the wing carries
     drop = 1.0 - knock.camber_mean.min() / passive.camber_mean
     assert static < drop < 2.0 * static         # half a sine of one and a half periods
