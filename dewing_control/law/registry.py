@@ -37,7 +37,10 @@ def of_kind(kind: str) -> type[Law]:
         raise BadInput(f'kind = {kind!r} is no control law: one of {", ".join(LAWS)} or '
                        'package.module:Name')
     found = plugins.load(kind, 'kind')
-    flaw = _flaw(found)
+    try:
+        flaw = _flaw(found)
+    except Exception as error:                      # whatever stands there in place of a mapping
+        flaw = f'its declarations cannot be read ({type(error).__name__}: {error})'
     if flaw:
         raise BadInput(f'kind = {kind!r} is no control law: {flaw}')
     return found
@@ -54,8 +57,14 @@ def _flaw(found: type) -> str:
                 'type' in field.metadata for _, field in parameters.fields(section))):
             return (f'its section {name} is no dataclass of fields declared by real, count, '
                     'choice and text of dewing_sim.parameters')
-    known = {f'{name}.{leaf}' for name, section in found.sections.items()
-             for leaf, _ in parameters.fields(section)}
+    known = {f'{name}.{leaf}': field for name, section in found.sections.items()
+             for leaf, field in parameters.fields(section)}
+    for name, field in known.items():
+        if 'default' in field.metadata:
+            parameters.check(name, field, field.metadata['default'])
+    unknown = [name for name in found.memory if name not in known]
+    if unknown:
+        return f'its memory depends on {unknown[0]}, which is not in its sections'
     for name, (low, high) in found.ranges.items():
         if name not in known or not 0.0 < low < high:
             return f'its range of {name} is not that of a positive setting in its sections'

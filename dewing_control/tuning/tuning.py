@@ -53,7 +53,8 @@ def tune(settings: ControllerSettings, identity: Identity, model: Design, bounds
 
     def candidate(logarithms) -> Judged:
         changes = dict(zip(ranges, map(float, np.exp(logarithms))))
-        return judge(with_gains(settings, changes), identity, model, strained)
+        with refusing(settings.kind):
+            return judge(with_gains(settings, changes), identity, model, strained)
 
     first = np.log([np.clip(value_of(settings, name), *limits)
                     for name, limits in ranges.items()])
