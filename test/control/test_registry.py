@@ -145,7 +145,8 @@ BROKEN = {
     INTEGRATOR.replace("'my_gain': Gain", "'my_gain': float") + 'Law = Integrator\n':
         'its section my_gain is no dataclass of fields declared by real, count, choice and text',
     INTEGRATOR.replace("'my_gain': Gain", "'pid': Gain").replace('ranges = ', 'no_ranges = ')
-    .replace('memory = (', 'no_memory = (') + 'Law = Integrator\n': 'its section pid has the name of another; taken are kind, model, ',
+    .replace('memory = (', 'no_memory = (') + 'Law = Integrator\n':
+        'its section pid has the name of another; taken are kind, model, ',
     INTEGRATOR.replace('(0.1, 100.0)', '(0.0, 100.0)') + 'Law = Integrator\n':
         'its range of my_gain.rate is not that of a positive setting',
     INTEGRATOR.replace("('my_gain.delay',)", "('my_gain.age',)") + 'Law = Integrator\n':
