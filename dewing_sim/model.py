@@ -23,6 +23,8 @@ from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.identity import loss_of_tension
+from dewing_sim.plant import Outputs
+from dewing_sim.quantities import schema
 from dewing_sim.state_space import Matrices, frequency_response
 
 if TYPE_CHECKING:
@@ -48,7 +50,7 @@ class Model:
     v_squared_slack: float              # V^2 at the loss of tension
     v_squared_max: float                # V^2 beyond which the model says nothing
     operating_v_squared: float = 0.0    # V0^2
-    units: tuple[str, ...] = ()         # (p,), SI where nothing is said
+    units: tuple[str, ...] = ()         # (p,), those of `Outputs` where nothing is said
     singular_values: np.ndarray = field(default_factory=lambda: np.empty(0))    # Hankel matrix
     case_yaml: str = ''
     fit: dict[str, dict[str, float]] = field(default_factory=dict)
@@ -59,7 +61,9 @@ class Model:
         """Check, and lay the matrices out by rows, as from a file: BLAS rounds by layout."""
         rows, states = len(self.output_names), len(self.a)
         if not self.units:
-            object.__setattr__(self, 'units', ('SI',) * rows)
+            known = schema(Outputs).units
+            object.__setattr__(self, 'units', tuple(known.get(name, 'SI')
+                                                    for name in self.output_names))
         shapes = {'a': (states, states), 'b': (states, 1), 'c': (rows, states), 'd': (rows, 1),
                   'operating_outputs': (rows,)}
         for name, shape in shapes.items():

@@ -20,7 +20,9 @@ from dewing_sysid.hankel import Hankel, leading
 class HankelFactors:
     """The singular value decomposition H0 = U S V^T of paper eq. 8 and the shifted H1.
 
-    Realisations of every order up to its rank follow from one decomposition.
+    Realisations of every order up to its rank follow from one decomposition, for which
+    `control.eigensys_realization` makes one each, of the whole matrix; and python-control has
+    Hankel singular values in continuous time only.
     """
 
     left: np.ndarray                    # U, (outputs rows, rank)

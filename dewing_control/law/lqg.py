@@ -137,7 +137,11 @@ class Lqg(Law):
 
 
 def regulator(model: Design, control_weight: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return K (n,) and the cost P (n, n) of the regulator with rho = ``control_weight``."""
+    """Return K (n,) and the cost P (n, n) of the regulator with rho = ``control_weight``.
+
+    These are those of `control.dlqr`, which calls the same solver, without the second in which a
+    flying node would import it.
+    """
     cost = linalg.solve_discrete_are(model.a, model.b[:, None], np.outer(model.c, model.c),
                                      np.array([[control_weight]]))
     gain = model.b @ cost @ model.a / (control_weight + model.b @ cost @ model.b)

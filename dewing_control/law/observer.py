@@ -47,7 +47,11 @@ class Observer:
     @classmethod
     def of(cls, design: Design, disturbance: DisturbanceModel, estimator: Estimator,
            ) -> 'Observer':
-        """Return the stationary Kalman filter for ``design`` and the disturbances described."""
+        """Return the stationary Kalman filter for ``design`` and the disturbances described.
+
+        Its gain corrects before the prediction: `control.dlqe` gives transition times gain. The
+        solver is the same, without the second in which a flying node would import it.
+        """
         rotation, load = exosystem(disturbance, design.dt)
         order, extra = design.order, load.size
         transition = np.block([[design.a, np.outer(design.b, load)],

@@ -62,7 +62,7 @@ def test_a_transfer_function_becomes_a_model_named_by_its_labels():
     sampled = control.sample_system(control.tf([CAMBER], [1.0e-3, 1.0]), 1.0e-4)
     sampled.set_outputs(['camber_mean'])
     found = Model.of_control(sampled, **BESIDE)
-    assert found.output_names == ('camber_mean',) and found.units == ('SI',)
+    assert found.output_names == ('camber_mean',) and found.units == ('m',)
     assert found.frequency_response([0.0])[0, 0] == pytest.approx(CAMBER)
 
 
@@ -151,7 +151,7 @@ def test_files_of_older_releases_are_read(tmp_path):
              v_squared_max=1250.0**2, rest_v_squared=0.0, disturbance_frequency=0.0)
     old = Model.load(tmp_path / 'old.npz')
     assert all(np.array_equal(one, other) for one, other in zip(old.matrices, ours.matrices))
-    assert old.fit == {} and old.units == ('SI',) * 3
+    assert old.fit == {} and old.units == ('m', 'm', '-')
 
 
 def test_files_that_are_no_models_are_refused(tmp_path):
@@ -173,6 +173,7 @@ def test_files_that_are_no_models_are_refused(tmp_path):
     'from dewing_cli.main import main\ntry:\n    main(["--help"])\nexcept SystemExit:\n    pass',
     'import dewing_sim.wing, dewing_sim.reduced, dewing_sysid.identify, '
     'dewing_control.trial.closed_loop',
+    'import dewing_sim.ros.node, dewing_sim.ros.recorder, dewing_sysid.node, dewing_control.node',
     'import sys\nsys.path.insert(0, "test/support")\n'
     'from identified_wing import design_model, identity\n'
     'from dewing_control.law.registry import law\nfrom dewing_control.settings import *\n'

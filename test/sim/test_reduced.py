@@ -89,7 +89,7 @@ def test_divergence_returns_the_last_good_state():
 
 
 @pytest.mark.parametrize('change, message', [
-    (dict(output_names=('lift',)), "'lift' is not an output"),
+    (dict(output_names=('lift',), units=()), "'lift' is not an output"),
     (dict(output_names=('not a name',), units=('m',)), 'unusable name of an output'),
     (dict(d=np.ones((1, 1))), 'D is not zero'),
 ])
