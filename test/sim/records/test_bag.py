@@ -3,12 +3,15 @@
 """The command that describes and draws bags."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from dewing_cli import main as cli
-from dewing_sim.records import bag
+from dewing_sim.errors import BadInput
+from dewing_sim.identity import Identity
+from dewing_sim.records import bag, bag_summary
 from dewing_sim.records.bag import _types
 
 JOINTS, TEXT = 'sensor_msgs/msg/JointState', 'std_msgs/msg/String'
@@ -58,3 +61,27 @@ def test_plot_draws_beside_the_bag_and_writes_over_nothing(path, tmp_path, capsy
 def test_what_cannot_be_done_is_said(arguments, sentence, capsys):
     assert cli.main(['bag', *arguments]) == 2
     assert sentence in capsys.readouterr().err
+
+
+def test_a_bag_of_version_0_1_is_read():
+    """Written by its recorder: a linear wing under PID, which had to say cd = 0."""
+    old = Path(__file__).parents[2] / 'reference' / 'flight_0.1.mcap'
+    series = bag.series(old, '/dewing/measurement')
+    assert [*series] == ['time', 'camber_mean', 'camber_max', 'cl', 'cd', 'v_squared']
+    assert len(series['cl']) == 13 and series['cl'][-1] == pytest.approx(0.3948, abs=1.0e-4)
+    assert bag_summary.summary(old)['steps_missing'] == 0
+    identity = Identity.from_yaml(next(bag.read(old, '/dewing/case')).message.data)
+    assert identity.version == '0.1.0' and identity.outputs is None
+    assert identity.units['camber_max'] == 'm'
+
+
+def test_a_bag_of_a_plant_without_camber_says_what_it_measured(tmp_path):
+    writer, types = bag.BagWriter(tmp_path / 'bare.mcap'), _types()
+    header, time = types.types['std_msgs/msg/Header'], types.types['builtin_interfaces/msg/Time']
+    writer.add_topic('/dewing/measurement', JOINTS)
+    message = types.types[JOINTS](header(time(0, 0), ''), ['cl', 'v_squared'],
+                                  np.array([0.4, 0.0]), np.empty(0), np.empty(0))
+    writer.write('/dewing/measurement', types.serialize_cdr(message, JOINTS), 0, 0)
+    writer.close()
+    with pytest.raises(BadInput, match='measured time, cl, v_squared; camber_mean and'):
+        bag_summary.draw(tmp_path / 'bare.mcap', tmp_path / 'bare.png')
