@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Laws of elasticity against closed forms, against each other, and on both elements."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,6 +25,7 @@ from dewing_sim.structure.material.gent import Gent
 from dewing_sim.structure.material.law import energy, slopes
 from dewing_sim.structure.material.mooney_rivlin import MooneyRivlin
 from dewing_sim.structure.material.ogden import Ogden
+from dewing_sim.structure.material.registry import LAWS as LAWS_BY_WORD
 from dewing_sim.structure.sheet import Sheet
 
 EPS, H = 2.7 * VACUUM_PERMITTIVITY, 5.0e-5
@@ -381,6 +384,19 @@ def test_a_law_that_softens_is_named_where_it_fails():
     sheet = Sheet(Elastomer(falling, 3.8e8, EPS), H, 2.0)
     with pytest.raises(Diverged, match='element 0 .* MooneyRivlin no longer resists shear'):
         sheet.respond([1.1], 0.0)
+
+
+def test_the_page_on_the_material_lists_every_law_with_its_constants():
+    page = (Path(__file__).parents[4] / 'docs' / 'material.md').read_text()
+    for word, kind in LAWS_BY_WORD.items():
+        row = next(line for line in page.splitlines() if line.startswith(f'| `{word}` |'))
+        _, title, formula, listed, *_ = (cell.strip() for cell in row.strip('|').split('|'))
+        assert title == kind.TITLE and kind.__doc__.startswith(formula)
+        declared = [f'`{name}`' + (' (Pa)' if field.metadata['unit'] == 'Pa' else '')
+                    for name, field in parameters.fields(kind)]
+        assert re.findall(r'`\w+`(?: \(Pa\))?', listed) == declared
+    options = dict(parameters.fields(parameters.Membrane))['law'].metadata['options']
+    assert options == tuple(LAWS_BY_WORD)
 
 
 def test_the_fields_of_gent_are_those_of_the_section():
