@@ -5,6 +5,7 @@
 from dewing_cli.paper import drawing
 from dewing_cli.paper.plan import Plan
 from dewing_cli.paper.section import Figure, Found, Section, Table
+from dewing_control.tuning.bounds import Bounds
 
 WORDS = {'shipped': 'shipped (config/controller.yaml)', 'tuned': 'tuned in this run',
          'as_printed': 'printed, read as V² per metre of camber',
@@ -23,8 +24,8 @@ def section(plan: Plan, found: Found) -> Section:
         f'as output; modes and damping ratios: {modes}. In units of the passive camber and of '
         f'V_L², the V² at which the tension vanishes, its static gain is '
         f'{values["static_gain"]:.3f}; a string under a uniform load has exactly 1.',
-        'A peak of the sensitivity Ms of at most 2 is asked for, at rest and at 0.82 of the '
-        'tension, which is what remains at the peaks of V² in Fig. 5.',
+        f'A peak of the sensitivity Ms of at most {Bounds.sensitivity:g} is asked for, at rest '
+        f'and at {Bounds.tension:g} of the tension, which is what remains at the peaks of V² in Fig. 5.',
         f'PI control of the lightly damped first mode is stable for ki below '
         f'{values["pi_limit"]:.3g} /s at the printed kp (ki G0 = 2 zeta w (1 + kp G0)); the '
         f'printed gain is {values["printed"]["ki"]:.3g} /s, '
@@ -47,7 +48,8 @@ def _row(label: str, report: dict) -> tuple[str, ...]:
                   for name in ('kp', 'ki', 'kd', 'derivative_filter'))
     if not report['stable']:
         verdict = (f'unstable, spectral radius {report["spectral_radius"]:.3f} a step'
-                   if not report['stable_at_rest'] else 'stable at rest, unstable at 0.82 tension')
+                   if not report['stable_at_rest'] else
+                   f'stable at rest, unstable at {Bounds.tension:g} tension')
         return (label, *gains, verdict, '-', '-', '-')
     return (label, *gains, f'Ms {report["ms_at_rest"]:.2f} at rest, {report["ms_peak"]:.2f} worst',
             f'{report["gain_margin_db"]:.1f}', f'{report["phase_margin_deg"]:.0f}',
@@ -59,7 +61,7 @@ def _figure(found: Found) -> Figure:
     figure, axes = drawing.axes(1, 2, 3.1)
     gain, sensitivity = axes[0]
     for label, name, style, colour in (('at rest', 'rest', '-', drawing.BLUE),
-                                       ('0.82 of the tension', 'strained', '--',
+                                       (f'{Bounds.tension:g} of the tension', 'strained', '--',
                                         drawing.ORANGE)):
         gain.loglog(result[f'{name}/frequency'], result[f'{name}/gain'], style, color=colour,
                     label=label)

@@ -8,6 +8,7 @@ from dewing_cli.paper import drawing
 from dewing_cli.paper.plan import Plan
 from dewing_cli.paper.section import Figure, Found, Row, Section, Table
 from dewing_cli.paper.sections.fig5 import percent
+from dewing_control.tuning.bounds import Bounds
 
 
 def section(plan: Plan, found: Found) -> Section:
@@ -75,7 +76,7 @@ def _gains(found: Found) -> Table:
         verdict = (f'unstable, spectral radius {report["spectral_radius"]:.3f}'
                    if not report['stable'] and not report['stable_at_rest'] else
                    f'stable, Ms {report["ms_at_rest"]:.1f} at rest, {report["ms_peak"]:.0f} at '
-                   '0.82 tension' if report['stable'] else 'stable at rest only')
+                   f'{Bounds.tension:g} tension' if report['stable'] else 'stable at rest only')
         failure = result.values['failure']
         rows.append((label, verdict, f'{1.0e3 * result["time"][-1]:.0f}', f'{mean:+.2f} %',
                      f'{amplitude:.2f} %', failure.partition(':')[0] if failure else '-'))
