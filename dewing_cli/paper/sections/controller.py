@@ -25,7 +25,8 @@ def section(plan: Plan, found: Found) -> Section:
         f'V_L², the V² at which the tension vanishes, its static gain is '
         f'{values["static_gain"]:.3f}; a string under a uniform load has exactly 1.',
         f'A peak of the sensitivity Ms of at most {Bounds.sensitivity:g} is asked for, at rest '
-        f'and at {Bounds.tension:g} of the tension, which is what remains at the peaks of V² in Fig. 5.',
+        f'and at {Bounds.tension:g} of the tension, which is what remains at the peaks of V² in '
+        'Fig. 5.',
         f'PI control of the lightly damped first mode is stable for ki below '
         f'{values["pi_limit"]:.3g} /s at the printed kp (ki G0 = 2 zeta w (1 + kp G0)); the '
         f'printed gain is {values["printed"]["ki"]:.3g} /s, '
