@@ -6,40 +6,44 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 FILE = Path(__file__).parents[1] / 'docs' / 'images' / 'architecture.svg'
-WIDTH, HEIGHT = 880, 430
+WIDTH, HEIGHT = 880, 520
 FONT = 'font-family="Helvetica, Arial, sans-serif"'
 # Left, top, width, height, colour, title, lines.
 BOXES = (
-    (20, 20, 540, 150, '#e8f1fa', 'dewing_sim: the plant', ()),
-    (40, 60, 150, 90, '#ffffff', 'fluid', ('finite_volume', 'conformal')),
-    (215, 60, 150, 90, '#ffffff', 'interface', ('transfer, added', 'mass, coupling')),
-    (390, 60, 150, 90, '#ffffff', 'structure', ('membrane, solid', 'Gent + Maxwell')),
-    (20, 220, 260, 80, '#e9f6ec', 'dewing_sysid',
+    (20, 20, 580, 190, '#e8f1fa', 'dewing_sim: the plant', ()),
+    (40, 55, 540, 36, '#ffffff', '', ('inputs: V², wall pressure, gust, motion of the wing',)),
+    (40, 120, 160, 76, '#ffffff', 'fluid', ('finite_volume,', 'conformal')),
+    (230, 120, 160, 76, '#ffffff', 'coupling', ('iteration, transfer,', 'added mass')),
+    (420, 120, 160, 76, '#ffffff', 'structure', ('membrane, solid,', 'laws of elasticity')),
+    (20, 255, 270, 76, '#e9f6ec', 'dewing_sysid',
      ('excitation, ERA / OKID:', 'V² to camber and lift')),
-    (300, 220, 260, 80, '#fdf0e3', 'dewing_control',
-     ('PID, feed-forward, LQG, MPC', 'tuning, comparison')),
-    (620, 20, 240, 150, '#f3ecfa', 'ROS 2', ()),
-    (640, 55, 200, 28, '#ffffff', '', ('simulator',)),
-    (640, 90, 95, 28, '#ffffff', '', ('controller',)),
-    (745, 90, 95, 28, '#ffffff', '', ('sysid',)),
-    (640, 125, 200, 28, '#ffffff', '', ('recorder',)),
-    (620, 220, 240, 80, '#f5f5f5', 'dewing COMMAND',
-     ('simulate, verify, identify, tune,', 'compare, sweep, ...')),
-    (20, 345, 840, 65, '#fffbe6', 'config/*.yaml',
+    (330, 255, 270, 76, '#fdf0e3', 'dewing_control',
+     ('PID, learnt, LQG, MPC, your own;', 'tuning, comparison')),
+    (20, 371, 580, 56, '#f5f5f5', 'dewing_cli: the command dewing',
+     ('simulate, verify, identify, tune, compare, sweep, paper, demo',)),
+    (660, 20, 200, 407, '#f3ecfa', 'ROS 2', ()),
+    (680, 90, 160, 36, '#ffffff', '', ('simulator',)),
+    (680, 275, 160, 36, '#ffffff', '', ('sysid, controller',)),
+    (680, 371, 160, 36, '#ffffff', '', ('recorder: bags',)),
+    (20, 452, 840, 56, '#fffbe6', 'config/*.yaml',
      ('every physical number in SI: cases, controller, identification; '
       'the schema checks them and describes ROS parameters',)),
 )
 # From, to, label, place of the label.
 ARROWS = (
-    ((215, 95), (190, 95), '', None), ((190, 120), (215, 120), '', None),
-    ((365, 95), (390, 95), '', None), ((390, 120), (365, 120), '', None),
-    ((150, 170), (150, 220), 'responses', (158, 200)),
-    ((280, 260), (300, 260), 'A, B, C', (267, 213)),
-    ((450, 220), (450, 170), 'V²', (458, 200)),
-    ((500, 170), (500, 220), 'camber, lift', (508, 200)),
-    ((560, 95), (620, 95), '', None), ((620, 110), (560, 110), '', None),
-    ((560, 260), (620, 260), '', None),
-    ((400, 345), (400, 300), '', None),
+    ((310, 91), (310, 120), '', None),
+    ((230, 145), (200, 145), '', None), ((200, 170), (230, 170), '', None),
+    ((390, 145), (420, 145), '', None), ((420, 170), (390, 170), '', None),
+    ((155, 210), (155, 255), 'responses', (163, 238)),
+    ((290, 293), (330, 293), 'model', (292, 286)),
+    ((430, 255), (430, 210), 'V²', (438, 238)),
+    ((500, 210), (500, 255), 'camber, lift', (508, 238)),
+    ((155, 371), (155, 331), '', None), ((465, 371), (465, 331), '', None),
+    ((600, 108), (680, 108), '', None), ((680, 118), (600, 118), '', None),
+    ((600, 293), (680, 293), '', None),
+    ((745, 275), (745, 126), 'V²', (722, 205)), ((775, 126), (775, 275), 'outputs', (782, 205)),
+    ((760, 311), (760, 371), 'all topics', (767, 345)),
+    ((440, 452), (440, 427), '', None),
 )
 
 
