@@ -69,6 +69,16 @@ class LockStep:
         self.steps += 1
         self.plant_seconds += perf_counter() - began
 
+    def figures(self, wall: float) -> dict[str, float]:
+        """Return counters and speeds of a run that has taken ``wall`` s."""
+        made = max(self.steps, 1)
+        return dict(
+            simulated_time=self.outputs.time, v_squared=self.v_squared, steps=self.steps,
+            stale=self.stale, rejected=self.rejected, unanswered=self.unanswered,
+            rtf=self.steps * self.plant.dt / wall if wall else 0.0,
+            ms_per_step=1.0e3 * self.plant_seconds / made,
+            overhead_ms_per_step=1.0e3 * max(wall - self.plant_seconds, 0.0) / made)
+
     def _observe(self, state: Any) -> Outputs:
         outputs = self.plant.observe(state)
         known = schema(type(outputs))

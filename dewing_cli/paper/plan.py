@@ -53,8 +53,9 @@ class Extent:
 
 
 FULL = Extent(
-    {'finite_volume': 'standard', 'conformal': 'standard'}, 30.0, 5.0, 60.0, 40.0, 0.4, 0.2, 2.0,
-    24, (
+    grids={'finite_volume': 'standard', 'conformal': 'standard'},
+    trim=30.0, rest=5.0, shed=60.0, variant=40.0, loop=0.4, averaged=0.2, long=2.0, frames=24,
+    variants=(
         (4.0, 'finite_volume', 'fast', 1.0e-4), (4.0, 'finite_volume', 'standard', 1.0e-4),
         (4.0, 'finite_volume', 'standard', 5.0e-5), (4.0, 'finite_volume', 'fine', 5.0e-5),
         (4.0, 'conformal', 'realtime', 1.0e-4), (4.0, 'conformal', 'standard', 1.0e-4),
@@ -63,16 +64,18 @@ FULL = Extent(
         (8.0, 'finite_volume', 'standard', 5.0e-5), (8.0, 'finite_volume', 'standard', 2.5e-5),
         (8.0, 'conformal', 'realtime', 5.0e-5), (8.0, 'conformal', 'standard', 1.0e-4),
         (8.0, 'conformal', 'standard', 5.0e-5), (8.0, 'conformal', 'reference', 5.0e-5)),
-    ('fig5', 'target_1', 'target_097'), CHORDS,
-    (0.25, 0.5, 0.7), (0.5, 1.0, 2.0), (1.0, 1.3), True)
+    scenarios=('fig5', 'target_1', 'target_097'), chords=CHORDS, shares=(0.25, 0.5, 0.7),
+    swings=(0.5, 1.0, 2.0), held=(1.0, 1.3), tuning=True)
 QUICK = Extent(
-    {'finite_volume': 'fast', 'conformal': 'realtime'}, 12.0, 3.0, 24.0, 12.0, 0.3, 0.1, 0.6,
-    12, (
+    grids={'finite_volume': 'fast', 'conformal': 'realtime'},
+    trim=12.0, rest=3.0, shed=24.0, variant=12.0, loop=0.3, averaged=0.1, long=0.6, frames=12,
+    variants=(
         (4.0, 'finite_volume', 'fast', 1.0e-4), (4.0, 'conformal', 'realtime', 1.0e-4),
         (4.0, 'conformal', 'standard', 1.0e-4),
         (8.0, 'finite_volume', 'fast', 1.0e-4), (8.0, 'conformal', 'realtime', 1.0e-4),
         (8.0, 'conformal', 'realtime', 2.0e-4)),
-    ('fig5',), (0.025, 0.030, 0.050), (0.5,), (1.0,), (1.3,), False)
+    scenarios=('fig5',), chords=(0.025, 0.030, 0.050), shares=(0.5,), swings=(1.0,), held=(1.3,),
+    tuning=False)
 
 
 @dataclass(frozen=True)

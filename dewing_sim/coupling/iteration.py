@@ -19,8 +19,9 @@ from dewing_sim.errors import NotConverged, RunFailed
 from dewing_sim.fluid.base import Fluid, Prediction, Wall
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine.kernels import checked_kernel
+from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.motion import Motion
-from dewing_sim.structure.dynamics.step import Operator, Step, Structure
+from dewing_sim.structure.dynamics.step import Operator, Step
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
 EXTRAPOLATION = tuple(map(np.array, (       # from one, two or three past values
@@ -52,7 +53,7 @@ class Coupling:
     """
 
     fluid: Fluid
-    structure: Structure
+    structure: Moving
     operator: Operator
     tolerance: float
     iterations: int

@@ -10,19 +10,19 @@ from dewing_sim.coupling.transfer import ColumnLoad, nodal_load
 from dewing_sim.fluid.base import Fluid
 from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.base import Inputs
-from dewing_sim.structure.dynamics.step import Structure
+from dewing_sim.structure.base import Moving
 
 
 @dataclass(frozen=True, eq=False)
 class Load:
     """Nodal forces of a flow and of accelerated axes, affine in the nodal velocities."""
 
-    structure: Structure
+    structure: Moving
     flow: ColumnLoad
     inflow: Inflow | None = None
 
     @classmethod
-    def of(cls, fluid: Fluid, structure: Structure, jump: np.ndarray, velocity: np.ndarray,
+    def of(cls, fluid: Fluid, structure: Moving, jump: np.ndarray, velocity: np.ndarray,
            inputs: Inputs) -> 'Load':
         """Return the load of a pressure jump (columns,) that acts at the wall ``velocity``.
 

@@ -14,16 +14,17 @@ import numpy as np
 from dewing_sim.coupling.load import Load
 from dewing_sim.coupling.transfer import add_load
 from dewing_sim.machine.kernels import kernel
+from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.band import Inverse, solve
 from dewing_sim.structure.dynamics.motion import Motion
-from dewing_sim.structure.dynamics.step import Operator, Structure
+from dewing_sim.structure.dynamics.step import Operator
 from dewing_sim.structure.membrane import Membrane
 from dewing_sim.structure.tension_curve import TensionCurve
 
 TAUT = 1.0e-3       # of the usual tension: more than the last correction can take
 
 
-def iteration_of(structure: Structure, motion: Motion, v_squared: float, operator: Operator,
+def iteration_of(structure: Moving, motion: Motion, v_squared: float, operator: Operator,
                  ) -> 'MembraneIteration | None':
     """Return the compiled iteration of a step that follows ``motion``, None if there is none."""
     if not isinstance(structure, Membrane):

@@ -13,8 +13,8 @@ import numpy as np
 
 from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.machine.kernels import checked_kernel, kernel
+from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.band import LowRank
-from dewing_sim.structure.dynamics.step import Structure
 
 
 @kernel
@@ -139,13 +139,13 @@ def nodal_load(load, position, velocity):
     return force
 
 
-def wall_of(fluid: Fluid, structure: Structure, position: np.ndarray, velocity: np.ndarray,
+def wall_of(fluid: Fluid, structure: Moving, position: np.ndarray, velocity: np.ndarray,
             ) -> Wall:
     """Return the wall that the flow sees of nodal positions and velocities (nodes, 2)."""
     return Wall(*wall(fluid.columns, structure.surface(position), structure.surface(velocity)))
 
 
-def nodal_impedance(fluid: Fluid, structure: Structure) -> LowRank:
+def nodal_impedance(fluid: Fluid, structure: Moving) -> LowRank:
     """Return -d force / d velocity (m, m) on the free degrees of freedom at rest.
 
     Its rank is the number of flow columns.

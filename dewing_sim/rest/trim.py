@@ -24,8 +24,8 @@ from dewing_sim.parameters import Case, outside_modules, to_mapping
 from dewing_sim.rest import checkpoint
 from dewing_sim.scales import Scales
 from dewing_sim.state import State
+from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.motion import Motion
-from dewing_sim.structure.dynamics.step import Structure
 
 QUASI_STEADY = 10.0                 # c/U
 PROGRESS_STEPS = 50                 # between calls of `progress`
@@ -38,7 +38,7 @@ class Wing(Protocol):
     case: Case
     scales: Scales
     fluid: Fluid
-    membrane: Structure
+    membrane: Moving
 
     def coupling(self, damping: float = 0.0) -> Coupling:
         """Return flow and membrane with a mass-proportional damping (U/c)."""

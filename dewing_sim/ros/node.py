@@ -17,6 +17,7 @@ from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.lockstep import Deadlines, LockStep
 from dewing_sim.parameters import Case
 from dewing_sim.ros import harness, messages, qos
+from dewing_sim.ros.question import Question
 from dewing_sim.ros.services import Services
 from dewing_sim.ros.status import Status
 from dewing_sim.ros.telemetry import Telemetry
@@ -56,15 +57,15 @@ class SimulatorNode(Node):
         self.lockstep = LockStep(
             self.plant, self.built.load(restore) if restore else self.built.rest,
             self.identity.v_squared_max)
+        self.rescue = self.settings.save or RESCUE
         self.exit_status: int | None = None
         self.status = Status(self, 'waiting for a controller and listeners', self._values)
         self._locked = self.run.mode == 'lockstep'
         self._paused, self._pending, self._granted = False, None, 0
-        self._began = self._created = self._asked = self._sent = monotonic()
-        self._started, self._overdue, self._blocked, self._resent = False, False, False, 0
+        self._began = self._created = monotonic()
+        self._started, self._overdue = False, False
         self._deadlines = Deadlines(
             self.plant.dt / self.run.rate if self.run.mode == 'realtime' else 0.0)
-        self._answered = True
         self._connect()
 
     @property
@@ -73,7 +74,7 @@ class SimulatorNode(Node):
         return self.status.sentence
 
     def _connect(self):
-        self._measurement = self.create_publisher(JointState, 'measurement', qos.LOOP)
+        self._question = Question(self, self.run.resend_period)
         self._identity = self.create_publisher(String, 'case', qos.LATCHED)
         self._telemetry = Telemetry(self, self.case, self.run, self.plant.dt,
                                     self.lockstep.outputs)
@@ -106,7 +107,7 @@ class SimulatorNode(Node):
 
     def _start_when_ready(self, now: float):
         controllers = self._command.get_publisher_count() if self._locked else 1
-        listeners = self._measurement.get_subscription_count()
+        listeners = self._question.listeners
         if controllers and listeners >= self.run.subscribers:
             self._started, self._began = True, now
             self._ask()
@@ -124,38 +125,27 @@ class SimulatorNode(Node):
 
     def _ask(self):
         """Publish the present measurement for the first time."""
-        self._asked = self._sent = monotonic()
-        self._answered = False
-        self._offer()
+        self._question.ask(self.lockstep.outputs)
+        self._warn_of_block()
         self._telemetry.publish(self.lockstep.outputs)
 
-    def _offer(self):
-        """Publish the present measurement; while a listener cannot take it, the run waits."""
-        self._blocked = not qos.publish(self._measurement,
-                                        messages.measurement(self.lockstep.outputs))
-        if self._blocked:
-            self.status.set(messages.WARN, f'{self._missing}: simulated time waits for it')
-
-    @property
-    def _missing(self) -> str:
-        return ('a listener of measurement does not keep up' if self._blocked
-                else 'no valid command')
+    def _warn_of_block(self):
+        if self._question.blocked:
+            self.status.set(messages.WARN,
+                            f'{self._question.missing}: simulated time waits for it')
 
     def _insist(self, now: float):
-        waited = now - self._asked
+        waited, missing = now - self._question.asked, self._question.missing
         if waited > self.run.command_timeout + self.run.hold_timeout:
-            self._finish(1, f'{self._missing} for {waited:.1f} s of wall time at '
+            self._finish(1, f'{missing} for {waited:.1f} s of wall time at '
                             f'{self.lockstep.outputs.time:.6f} s: stopped')
             return
-        if self._blocked:
-            self._offer()
-        elif now - self._sent > self.run.resend_period:
-            self._sent, self._resent = now, self._resent + 1
-            self._offer()
+        self._question.repeat(now)
+        self._warn_of_block()
         if waited > self.run.command_timeout and not self._overdue:
             self._overdue = True
             self.status.set(messages.WARN, (
-                f'{self._missing} for {waited:.1f} s: V^2 = {self.lockstep.v_squared:g} V^2 and '
+                f'{missing} for {waited:.1f} s: V^2 = {self.lockstep.v_squared:g} V^2 and '
                 f'simulated time are held, stopping in {self.run.hold_timeout:g} s'))
 
     def _on_command(self, message: JointState):
@@ -173,7 +163,7 @@ class SimulatorNode(Node):
             return
         if not self._locked:
             self.lockstep.v_squared = v_squared
-            self._answered |= stamp == self.lockstep.stamp
+            self._question.answered |= stamp == self.lockstep.stamp
         elif self._paused and not self._granted:
             self._pending = v_squared
         else:
@@ -183,12 +173,13 @@ class SimulatorNode(Node):
         """Make the next step of the modes that wait for no command."""
         if self.exit_status is not None:
             return
-        if self._blocked:
-            self._offer()
+        if self._question.blocked:
+            self._question.offer()
+            self._warn_of_block()
             return
         if self.run.mode == 'realtime':
             self._deadlines.begin(monotonic())
-            self.lockstep.unanswered += not self._answered
+            self.lockstep.unanswered += not self._question.answered
         self._advance(self.lockstep.v_squared)
 
     def _advance(self, v_squared: float):
@@ -212,7 +203,7 @@ class SimulatorNode(Node):
 
     def _finish(self, status: int, sentence: str):
         if status or self.settings.save:
-            sentence += '; ' + self.save_state()
+            sentence += '; ' + self.save_state()[1]
         self._pace.cancel()
         self.status.set(messages.ERROR if status else messages.OK, sentence)
         qos.deliver(self.publishers, self.run.delivery_timeout)
@@ -222,19 +213,6 @@ class SimulatorNode(Node):
         """End the run as asked from outside, the state saved if a file is named for it."""
         if self.exit_status is None:
             self._finish(0, f'interrupted at {self.lockstep.outputs.time:.6f} s')
-
-    @property
-    def rescue(self) -> str:
-        """The file for the state of the run."""
-        return self.settings.save or RESCUE
-
-    def save_state(self) -> str:
-        """Save the last good state and say where, or why not."""
-        try:
-            self.built.save(self.rescue, self.lockstep.state)
-        except (BadInput, OSError) as error:
-            return f'its state could not be saved: {error}'
-        return f'state saved in {self.rescue}'
 
     def _report(self):
         controllers = self._command.get_publisher_count()
@@ -246,17 +224,10 @@ class SimulatorNode(Node):
             self.status.report()
 
     def _values(self) -> dict[str, Any]:
-        step = self.lockstep
-        wall = self._asked - self._began if self._started else 0.0
-        made = max(step.steps, 1)
-        return dict(
-            mode=self.run.mode, simulated_time=step.outputs.time, v_squared=step.v_squared,
-            steps=step.steps, stale=step.stale, rejected=step.rejected, resent=self._resent,
-            unanswered=step.unanswered, missed_deadlines=self._deadlines.missed,
-            rtf=step.steps * self.plant.dt / wall if wall else 0.0,
-            ms_per_step=1.0e3 * step.plant_seconds / made,
-            overhead_ms_per_step=1.0e3 * max(wall - step.plant_seconds, 0.0) / made,
-            **vars(self.built.monitor(step.state)))
+        wall = self._question.asked - self._began if self._started else 0.0
+        return dict(mode=self.run.mode, resent=self._question.resent,
+                    missed_deadlines=self._deadlines.missed, **self.lockstep.figures(wall),
+                    **vars(self.built.monitor(self.lockstep.state)))
 
     # --- what the services do ------------------------------------------------------------------
 
@@ -281,6 +252,14 @@ class SimulatorNode(Node):
         while not self._locked and self._granted and self.exit_status is None:
             self._advance(self.lockstep.v_squared)
         return True
+
+    def save_state(self) -> tuple[bool, str]:
+        """Save the last good state; return whether that worked, and where it is or why not."""
+        try:
+            self.built.save(self.rescue, self.lockstep.state)
+        except (BadInput, OSError) as error:
+            return False, f'its state could not be saved: {error}'
+        return True, f'state saved in {self.rescue}'
 
     def restart(self, state: Any):
         """Go on from ``state`` at its time."""

@@ -44,8 +44,7 @@ class Services:
         return True, 'at rest'
 
     def _save(self) -> Answer:
-        sentence = self._node.save_state()
-        return sentence.startswith('state saved'), sentence
+        return self._node.save_state()
 
     def _restore(self) -> Answer:
         path = self._node.settings.restore or self._node.rescue

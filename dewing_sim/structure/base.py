@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from dewing_sim.errors import Slack
+from dewing_sim.structure.dynamics.motion import Motion
 
 
 class Structure(Protocol):
@@ -49,6 +50,27 @@ class Structure(Protocol):
 
     def require_bearable(self, position: np.ndarray, v_squared: float) -> None:
         """Raise `Slack` if V^2 takes all tension at the stretch of ``position``."""
+
+
+class Moving(Structure, Protocol):
+    """A structure that a time step moves in a flow."""
+
+    def surface(self, nodal: np.ndarray) -> np.ndarray:
+        """Return what the flow sees of nodal positions or velocities, (n + 1, 2), linear."""
+
+    def spread(self, force: np.ndarray) -> np.ndarray:
+        """Return the nodal forces of forces (n + 1, 2) on the surface, its transpose."""
+
+    @property
+    def linear_range(self) -> float:
+        """Length of corrections beyond which a tangent made before them is of no use."""
+
+    def during(self, motion: Motion, dt: float, v_squared: float) -> 'Moving':
+        """Return the structure with what it remembers in the step that follows ``motion``."""
+
+    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
+              ) -> np.ndarray:
+        """Return the memory after a step from ``motion`` to ``position``."""
 
 
 class Taut:

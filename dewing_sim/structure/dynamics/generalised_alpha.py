@@ -19,8 +19,9 @@ from typing import Callable
 import numpy as np
 
 from dewing_sim.errors import BadInput, NotConverged
+from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.band import Inverse, LowRank
-from dewing_sim.structure.dynamics.step import ITERATIONS, Structure
+from dewing_sim.structure.dynamics.step import ITERATIONS
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +34,7 @@ class Swing:
     load: np.ndarray
 
     @classmethod
-    def of(cls, structure: Structure, position: np.ndarray, velocity: np.ndarray,
+    def of(cls, structure: Moving, position: np.ndarray, velocity: np.ndarray,
            v_squared: float, load: np.ndarray) -> 'Swing':
         """Return a state whose acceleration balances its forces."""
         imbalance = load - structure.internal_force(position, v_squared)
@@ -93,7 +94,7 @@ class Scheme:
                                           + gamma * acceleration)
         return Swing(position, velocity, acceleration, load)
 
-    def advance(self, structure: Structure, start: Swing, v_squared: float,
+    def advance(self, structure: Moving, start: Swing, v_squared: float,
                 load: Callable[[np.ndarray], np.ndarray], tolerance: float = 1.0e-12) -> Swing:
         """Return the state after ``dt`` under V^2 and ``load(position)``, (nodes, 2).
 
@@ -116,7 +117,7 @@ class Scheme:
         raise NotConverged(f'generalised alpha: largest correction {size / structure.chord:.3g} '
                            f'chords after {ITERATIONS} iterations; reduce the time step')
 
-    def _inverse(self, structure: Structure, position: np.ndarray, v_squared: float,
+    def _inverse(self, structure: Moving, position: np.ndarray, v_squared: float,
                  before: np.ndarray | None) -> Inverse:
         band = (1.0 - self.alpha_f) * structure.tangent(position, v_squared, 0.0, before)
         inertia = (1.0 - self.alpha_m) / (self.beta * self.dt ** 2)

@@ -17,6 +17,7 @@ from typing import Callable, Protocol
 import numpy as np
 
 from dewing_sim.errors import Diverged, NotConverged, RunFailed
+from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.band import Inverse, LowRank
 from dewing_sim.structure.dynamics.motion import Motion
 from dewing_sim.structure.dynamics.statics import march
@@ -26,51 +27,6 @@ SMALLEST_SHARE = 2.0 ** -6
 SHRINKAGE = 4.0     # a correction by an old tangent that shrinks by less is replaced
 
 Load = Callable[[np.ndarray, np.ndarray], np.ndarray]
-
-
-class Structure(Protocol):
-    """What a time step needs of a structure; nodal arrays are (nodes, 2), forces per span."""
-
-    rest_position: np.ndarray
-    mass: np.ndarray                    # (nodes,), lumped
-
-    @property
-    def chord(self) -> float:
-        """Length to which corrections are compared."""
-
-    @property
-    def free(self) -> slice | np.ndarray:
-        """Entries of a raveled nodal array that may move: m degrees of freedom."""
-
-    def internal_force(self, position: np.ndarray, v_squared: float) -> np.ndarray:
-        """Return the nodal gradient of the potential energy."""
-
-    def tangent(self, position: np.ndarray, v_squared: float, pressure: float = 0.0,
-                before: np.ndarray | None = None) -> np.ndarray:
-        """Return its derivative, a symmetric band (2 w + 1, m) on the free degrees of freedom.
-
-        ``before`` is the position of the last iteration, if any.
-        """
-
-    def surface(self, nodal: np.ndarray) -> np.ndarray:
-        """Return what the flow sees of nodal positions or velocities, (n + 1, 2), linear."""
-
-    def spread(self, force: np.ndarray) -> np.ndarray:
-        """Return the nodal forces of forces (n + 1, 2) on the surface, its transpose."""
-
-    @property
-    def linear_range(self) -> float:
-        """Length of corrections beyond which a tangent made before them is of no use."""
-
-    def during(self, motion: Motion, dt: float, v_squared: float) -> 'Structure':
-        """Return the structure with what it remembers in the step that follows ``motion``."""
-
-    def after(self, motion: Motion, position: np.ndarray, v_squared: float, dt: float,
-              ) -> np.ndarray:
-        """Return the memory after a step from ``motion`` to ``position``."""
-
-    def require_taut(self, position: np.ndarray, v_squared: float) -> None:
-        """Raise `Slack` if the structure cannot carry its state."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +43,7 @@ class Operator:
     inverse: Inverse
 
     @classmethod
-    def of(cls, structure: Structure, dt: float, impedance: LowRank | None = None,
+    def of(cls, structure: Moving, dt: float, impedance: LowRank | None = None,
            damping: float = 0.0, position: np.ndarray | None = None, v_squared: float = 0.0,
            ) -> 'Operator':
         """Return the operator about ``position``, by default the structure's rest state.
@@ -101,7 +57,7 @@ class Operator:
         return cls(dt, damping, impedance, Inverse.of(band, impedance, 1.5 / dt))
 
 
-def _band(structure: Structure, position: np.ndarray, v_squared: float, dt: float,
+def _band(structure: Moving, position: np.ndarray, v_squared: float, dt: float,
           damping: float, before: np.ndarray | None = None) -> np.ndarray:
     """Return kappa^2 M + kappa damping M + K(position) as a band."""
     kappa = 1.5 / dt
@@ -126,7 +82,7 @@ class Iteration(Protocol):
         """Whether its last correction cannot have taken the tension; if not, look."""
 
 
-def advance(structure: Structure, motion: Motion, v_squared: float, load: Load,
+def advance(structure: Moving, motion: Motion, v_squared: float, load: Load,
             operator: Operator, tolerance: float = 1.0e-10,
             guess: np.ndarray | None = None) -> Motion:
     """Return the motion one step later under one load, see `Step`. Raises `Slack` also."""
@@ -148,7 +104,7 @@ class Step:
     ``iteration`` does the work where it can.
     """
 
-    def __init__(self, structure: Structure, motion: Motion, v_squared: float,
+    def __init__(self, structure: Moving, motion: Motion, v_squared: float,
                  operator: Operator, iteration: Iteration | None = None):
         """Start from the operator's tangent."""
         self.structure, self.motion, self.v_squared = structure, motion, v_squared

@@ -72,12 +72,15 @@ def of_section(section: parameters.Membrane, pressure: float, voltage_limit: flo
     free = np.geomspace(1.0, 0.999 * _reach(elastomer, limits.equibiaxial), POINTS)
     camber_voltage = np.linspace(0.0, min(voltage_limit, 0.95 * slack), VOLTAGES)
     return Curves(
-        stretch, _stresses(elastomer, stretch), voltage,
-        np.array([sheet.respond([section.prestretch], v * v).tension[0] for v in voltage]), slack,
-        free, limits.equibiaxial_field(elastomer, free) * section.initial_thickness,
-        _pull_in(elastomer), section.initial_thickness, camber_voltage,
-        {name: cambers(elements.make(parameters.replace(section, changes)), pressure,
-                       camber_voltage) for name, changes in STRUCTURES.items()})
+        stretch=stretch, stress=_stresses(elastomer, stretch), voltage=voltage,
+        tension=np.array([sheet.respond([section.prestretch], v * v).tension[0]
+                          for v in voltage]),
+        slack_voltage=slack, free_stretch=free,
+        free_voltage=limits.equibiaxial_field(elastomer, free) * section.initial_thickness,
+        pull_in=_pull_in(elastomer), thickness=section.initial_thickness,
+        camber_voltage=camber_voltage,
+        camber={name: cambers(elements.make(parameters.replace(section, changes)), pressure,
+                              camber_voltage) for name, changes in STRUCTURES.items()})
 
 
 def cambers(structure: Membrane | Solid, pressure: float, voltage: np.ndarray) -> np.ndarray:

@@ -1,0 +1,53 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The measurement that awaits its answer: published, repeated, and held back by slow listeners."""
+
+from time import monotonic
+
+from sensor_msgs.msg import JointState
+
+from dewing_sim.plant import Outputs
+from dewing_sim.ros import messages, qos
+
+
+class Question:
+    """The present measurement and how long ago it was published.
+
+    While a listener cannot take a measurement it is `blocked`, and the run waits.
+    """
+
+    def __init__(self, node, resend_period: float):
+        """Advertise ``measurement`` on ``node``."""
+        self._publisher = node.create_publisher(JointState, 'measurement', qos.LOOP)
+        self._resend_period = resend_period
+        self._outputs: Outputs | None = None
+        self.asked = self._sent = monotonic()       # for the first and for the last time
+        self.answered, self.blocked, self.resent = True, False, 0
+
+    @property
+    def listeners(self) -> int:
+        """Number of subscriptions to ``measurement``."""
+        return self._publisher.get_subscription_count()
+
+    def ask(self, outputs: Outputs) -> None:
+        """Publish the measurement of ``outputs`` for the first time."""
+        self._outputs, self.answered = outputs, False
+        self.asked = self._sent = monotonic()
+        self.offer()
+
+    def offer(self) -> None:
+        """Publish the present measurement (again)."""
+        self.blocked = not qos.publish(self._publisher, messages.measurement(self._outputs))
+
+    def repeat(self, now: float) -> None:
+        """Publish again what was blocked, or what has had no answer for the resend period."""
+        if self.blocked:
+            self.offer()
+        elif now - self._sent > self._resend_period:
+            self._sent, self.resent = now, self.resent + 1
+            self.offer()
+
+    @property
+    def missing(self) -> str:
+        """What the run waits for."""
+        return 'a listener of measurement does not keep up' if self.blocked else 'no valid command'
