@@ -11,33 +11,17 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from dewing_sim import parameters
 from dewing_sim.build import build
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.lockstep import Deadlines, LockStep
-from dewing_sim.parameters import Case
 from dewing_sim.ros import harness, messages, qos
 from dewing_sim.ros.question import Question
 from dewing_sim.ros.services import Services
+from dewing_sim.ros.simulator_parameters import settings_of
 from dewing_sim.ros.status import Status
 from dewing_sim.ros.telemetry import Telemetry
-from dewing_sim.settings import SimulatorSettings
 
 WATCH_PERIOD = 0.05         # s, wall
-RESCUE = 'dewing_state.npz'
-LIVE = ('run.step_count',)  # may change while the node runs
-
-
-def settings_of(node: Node) -> tuple[SimulatorSettings, Case]:
-    """Return the settings and the case that the parameters of ``node`` describe, declared."""
-    given = messages.take_overrides(node)
-    own = {name for name, _field in parameters.fields(SimulatorSettings)}
-    settings = parameters.load('simulator', SimulatorSettings,
-                               {name: given.pop(name) for name in own & given.keys()})
-    case = parameters.load(settings.case, Case, given)
-    messages.declare(node, settings, read_only=True, live=LIVE)
-    messages.declare(node, case, read_only=True, open_fields=messages.constants(case))
-    return settings, case
 
 
 class SimulatorNode(Node):
@@ -57,7 +41,6 @@ class SimulatorNode(Node):
         self.lockstep = LockStep(
             self.plant, self.built.load(restore) if restore else self.built.rest,
             self.identity.v_squared_max)
-        self.rescue = self.settings.save or RESCUE
         self.exit_status: int | None = None
         self.status = Status(self, 'waiting for a controller and listeners', self._values)
         self._locked = self.run.mode == 'lockstep'
@@ -80,7 +63,7 @@ class SimulatorNode(Node):
                                     self.lockstep.outputs)
         self._command = self.create_subscription(
             JointState, 'command', self._on_command, qos.LATEST)
-        Services(self)
+        self.served = Services(self)
         self.add_on_set_parameters_callback(self._on_parameters)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(WATCH_PERIOD, self._watch, clock=steady)
@@ -92,8 +75,6 @@ class SimulatorNode(Node):
     def _log_trim(self, done: int, total: int):
         self.get_logger().info(f'trimming the wing: step {done} of {total}',
                                throttle_duration_sec=2.0)
-
-    # --- the loop ---------------------------------------------------------------------------
 
     def _watch(self):
         """Start when everybody is there; ask again and give up when no answer comes."""
@@ -193,17 +174,15 @@ class SimulatorNode(Node):
             self._overdue = False
             self.status.set(messages.OK, 'running')
         if self.run.save_steps and self.lockstep.steps % self.run.save_steps == 0:
-            self.save_state()
+            self.served.save()
         self._ask()
         end = self.run.duration
         if end and self.lockstep.outputs.time > end - 0.5 * self.plant.dt:
             self._finish(0, f'finished at {end:g} s')
 
-    # --- the end, and what is said about it --------------------------------------------------
-
     def _finish(self, status: int, sentence: str):
         if status or self.settings.save:
-            sentence += '; ' + self.save_state()[1]
+            sentence += '; ' + self.served.save()[1]
         self._pace.cancel()
         self.status.set(messages.ERROR if status else messages.OK, sentence)
         qos.deliver(self.publishers, self.run.delivery_timeout)
@@ -229,8 +208,6 @@ class SimulatorNode(Node):
                     missed_deadlines=self._deadlines.missed, **self.lockstep.figures(wall),
                     **vars(self.built.monitor(self.lockstep.state)))
 
-    # --- what the services do ------------------------------------------------------------------
-
     def pause(self, wanted: bool):
         """Hold simulated time, or go on."""
         self._paused = wanted
@@ -252,14 +229,6 @@ class SimulatorNode(Node):
         while not self._locked and self._granted and self.exit_status is None:
             self._advance(self.lockstep.v_squared)
         return True
-
-    def save_state(self) -> tuple[bool, str]:
-        """Save the last good state; return whether that worked, and where it is or why not."""
-        try:
-            self.built.save(self.rescue, self.lockstep.state)
-        except (BadInput, OSError) as error:
-            return False, f'its state could not be saved: {error}'
-        return True, f'state saved in {self.rescue}'
 
     def restart(self, state: Any):
         """Go on from ``state`` at its time."""

@@ -9,6 +9,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from dewing_sim.errors import BadInput
 
+RESCUE = 'dewing_state.npz'
 Answer = tuple[bool, str]       # success and a sentence
 
 
@@ -21,7 +22,7 @@ class Services:
         self._offer(SetBool, 'pause', lambda request: self._pause(request.data))
         self._offer(Trigger, 'step', lambda _: self._step())
         self._offer(Trigger, 'reset', lambda _: self._reset())
-        self._offer(Trigger, 'save', lambda _: self._save())
+        self._offer(Trigger, 'save', lambda _: self.save())
         self._offer(Trigger, 'restore', lambda _: self._restore())
 
     def _offer(self, kind: type, name: str, act: Callable[[Any], Answer]):
@@ -43,11 +44,22 @@ class Services:
         self._node.restart(self._node.built.rest)
         return True, 'at rest'
 
-    def _save(self) -> Answer:
-        return self._node.save_state()
+    def save(self) -> Answer:
+        """Save the last good state; say where it is, or why it is not."""
+        node = self._node
+        try:
+            node.built.save(self.rescue, node.lockstep.state)
+        except (BadInput, OSError) as error:
+            return False, f'its state could not be saved: {error}'
+        return True, f'state saved in {self.rescue}'
+
+    @property
+    def rescue(self) -> str:
+        """The file for the state of the run."""
+        return self._node.settings.save or RESCUE
 
     def _restore(self) -> Answer:
-        path = self._node.settings.restore or self._node.rescue
+        path = self._node.settings.restore or self.rescue
         try:
             self._node.restart(self._node.built.load(path))
         except BadInput as error:

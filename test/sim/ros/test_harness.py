@@ -209,7 +209,7 @@ def test_a_call_makes_as_many_steps_as_asked_for_and_goes_back_to_what_was_saved
     assert simulator.lockstep.steps == before + 25 and simulator.reason == 'paused'
     answer, = simulator.set_parameters([Parameter('run.step_count', value=0)])
     assert not answer.successful and simulator.run.step_count == 25
-    assert simulator.save_state()[0]
+    assert simulator.served.save()[0]
     call(session, client, Trigger.Request())
     restore = simulator.create_client(Trigger, 'simulator/restore')
     assert call(session, restore, Trigger.Request()).success

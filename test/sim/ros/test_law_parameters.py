@@ -8,7 +8,7 @@ from rclpy.node import Node
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.ros import harness
-from dewing_sim.ros.node import settings_of
+from dewing_sim.ros.simulator_parameters import settings_of
 
 OGDEN = {'membrane.law': 'ogden', 'membrane.constants.mu_1': 1.5e4,
          'membrane.constants.alpha_1': 2.5}
