@@ -52,7 +52,7 @@ RUNS = {
 }
 IDENTIFY = ('identify', *REALTIME, '--set', 'experiment.record=4.0', '--set',
             'fresh.record=2.0', '--window', '4.0', '--order', '8', '--set',
-            'realisation.unstable_poles=reflect', '--processes', '1')
+            'realisation.unstable_poles=reflect', '--jobs', '1')
 LAWS = ('lqg', 'mpc', 'periodic')
 BAG_STEPS = 60
 

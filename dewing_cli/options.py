@@ -4,12 +4,13 @@
 
 import argparse
 import math
-from typing import Any
+from typing import Any, Callable
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
 from dewing_sim.inputs.disturbance import DISTURBANCES
+from dewing_sim.machine.jobs import Workers
 from dewing_sim.parameters import Case, Numerics
 from dewing_sim.plugins import is_plugin
 
@@ -46,6 +47,22 @@ def add_results(parser: argparse.ArgumentParser, out: str | None = None) -> None
     group.add_argument('--json', metavar='FILE', help='write the metrics as JSON')
     group.add_argument('--force', action='store_true', help='write over existing files')
     group.add_argument('--quiet', action='store_true', help='no progress and no table')
+
+
+def add_workers(parser: argparse.ArgumentParser, default: str = '2') -> None:
+    """Declare --jobs, with its ``default`` in words, and --scheduler."""
+    where = parser.add_argument_group('workers').add_mutually_exclusive_group()
+    where.add_argument('--jobs', type=int, metavar='N',
+                       help=f'processes of this machine (default: {default})')
+    where.add_argument('--scheduler', metavar='ADDRESS',
+                       help='run on the dask cluster there, such as tcp://host:8786')
+
+
+def workers(arguments: argparse.Namespace, default: Callable[[], int] = lambda: 2) -> Workers:
+    """Return where to run what `add_workers` was told; raise `BadInput` if --jobs is no number."""
+    if arguments.jobs is not None:
+        within('--jobs', arguments.jobs, 1, 1024, 'processes')
+    return Workers(arguments.jobs or default(), arguments.scheduler)
 
 
 def numerics_field(option: str) -> Any:

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run experiments on a plant: excited and undisturbed runs branch from one state."""
 
-import multiprocessing
-import signal
+import pickle
 import zipfile
 from dataclasses import dataclass, replace
 from functools import partial
@@ -16,7 +15,11 @@ from scipy.integrate import trapezoid
 from dewing_sim.errors import BadInput, Slack
 from dewing_sim.files import new_file
 from dewing_sim.identity import Identity
+<<<<<<< HEAD
 from dewing_sim.inputs.base import Inputs
+=======
+from dewing_sim.machine.jobs import HERE, Failed, Job, Workers, results
+>>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.plant import Outputs, Plant
 from dewing_sim.quantities import Absent
 
@@ -162,41 +165,31 @@ def _step(plant: Plant, state: Any, v_squared: float, number: int) -> Any:
 
 
 def run_all(plant: Plant, start: Any, names: Sequence[str], inputs: Sequence[np.ndarray],
-            processes: int = 2, progress: Callable[[float], None] = lambda fraction: None,
-            ) -> list[np.ndarray]:
+            workers: Workers = HERE,
+            progress: Callable[[float], None] = lambda fraction: None) -> list[np.ndarray]:
     """Return the outputs of independent runs, in the order of ``inputs``.
 
-    The runs are shared out over forked processes, the longest first; where there is no fork, or
-    with one process, they follow each other.  ``progress`` hears the finished fraction.
+    The longest start first. With one worker, or a plant that does not pickle, such as one with a
+    user's lambda, they follow each other in this process. ``progress`` hears the finished share.
     """
     order = sorted(range(len(inputs)), key=lambda i: -len(inputs[i]))
-    queue = [inputs[i] for i in order]
-    total, done = sum(map(len, queue)), 0
-    results: list[np.ndarray] = [np.empty(0)] * len(queue)
-    forks = 'fork' in multiprocessing.get_all_start_methods() and processes > 1
-    for i, outputs in zip(order, (_forked if forks else _in_turn)(
-            partial(run, plant, start, names), queue, processes)):
-        results[i] = outputs
+    jobs = {i: Job(partial(run, plant, start, names, inputs[i]), cost=len(inputs[i]))
+            for i in order}
+    alone = workers == HERE or not _pickles((plant, start))
+    found: dict[int, np.ndarray] = {}
+    total, done = sum(map(len, inputs)), 0
+    for i, outcome in ((i, jobs[i].call()) for i in order) if alone else results(jobs, workers):
+        if isinstance(outcome, Failed):
+            raise outcome.error
+        found[i] = outcome
         done += len(inputs[i])
         progress(done / total)
-    return results
+    return [found[i] for i in range(len(inputs))]
 
 
-def _in_turn(job: Callable, queue: Sequence[np.ndarray], processes: int):
-    return map(job, queue)
-
-
-_job: Callable | None = None
-
-
-def _forked(job: Callable, queue: Sequence[np.ndarray], processes: int):
-    """Yield results in order; the job reaches the children by fork, so it need not pickle."""
-    global _job
-    _job = job
-    with multiprocessing.get_context('fork').Pool(
-            min(processes, len(queue)), signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
-        yield from pool.imap(_call, queue, chunksize=1)
-
-
-def _call(v_squared: np.ndarray) -> np.ndarray:
-    return _job(v_squared)
+def _pickles(thing: Any) -> bool:
+    try:
+        pickle.dumps(thing)
+    except (pickle.PicklingError, AttributeError, TypeError):
+        return False
+    return True

@@ -10,6 +10,7 @@ import yaml
 
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.machine.jobs import HERE, Workers
 from dewing_sim.model import Model
 from dewing_sim.plant import Plant
 from dewing_sim.state_space import Matrices
@@ -152,14 +153,14 @@ def linearity(records: dict[str, Record]) -> dict[str, float]:
 
 
 def identify_plant(plant: Plant, start: Any, identity: Identity, settings: Settings,
-                   names: Sequence[str] | None = None, processes: int = 2,
+                   names: Sequence[str] | None = None, workers: Workers = HERE,
                    progress: Callable[[float], None] = lambda fraction: None) -> Identification:
     """Run every experiment on ``plant`` from its rest state ``start`` and identify it.
 
     Raises `BadInput` as `plan.make`, `experiment.run` and `identify` do.
     """
     planned = make(settings, identity, names)
-    outputs = run_all(plant, start, planned.names, list(planned.inputs.values()), processes,
+    outputs = run_all(plant, start, planned.names, list(planned.inputs.values()), workers,
                       progress)
     return identify(planned.records(dict(zip(planned.inputs, outputs))), settings, identity)
 

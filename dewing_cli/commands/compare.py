@@ -33,8 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                        help='settings of all controllers (default: controller)')
     group.add_argument('--model', metavar='FILE',
                        help='npz of the identified model (default: identify)')
-    group.add_argument('--jobs', type=int, default=2, metavar='N',
-                       help='processes; 1 gives undisturbed computing times (default: 2)')
+    options.add_workers(parser, '2; 1 gives undisturbed computing times')
     options.add_results(parser, 'folder of table, figure and metrics (default: out/compare)')
     parser.set_defaults(out='out/compare', duration=0.5)
 
@@ -52,14 +51,14 @@ def run(arguments: argparse.Namespace) -> None:
     names = _controllers(arguments.controllers, settings.kind)
     duration = 0.4 if arguments.quick else options.within(
         '--duration', arguments.duration, 0.02, 100.0, 's')
-    options.within('--jobs', arguments.jobs, 1, 64, 'processes')
+    workers = options.workers(arguments)
     folder = Path(arguments.out)
     for path in filter(None, (folder / 'metrics.json', folder / 'table.md',
                               folder / 'compare.png', folder / 'model.npz', arguments.json)):
         check_free(path, arguments.force)
     with bar('comparing', 'scenarios', arguments.quiet) as show:
         plan = _plan(arguments, settings, folder, duration)
-        collected = _collect(plan, scenarios, names, arguments.jobs, show)
+        collected = _collect(plan, scenarios, names, workers, show)
     _deliver(arguments, folder, collected)
 
 
@@ -99,10 +98,10 @@ def _plan(arguments: argparse.Namespace, settings: Any, folder: Any, duration: f
                 max(duration - AVERAGED, 0.5 * duration))
 
 
-def _collect(plan: Any, scenarios: tuple, names: tuple, jobs: int, show: Any) -> dict:
+def _collect(plan: Any, scenarios: tuple, names: tuple, workers: Any, show: Any) -> dict:
     from dewing_control.trial.comparison import run_all
     collected = {}
-    for name, result in run_all(plan, scenarios, names, jobs):
+    for name, result in run_all(plan, scenarios, names, workers):
         collected[name] = result
         show(len(collected), len(scenarios))
     return collected

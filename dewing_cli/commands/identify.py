@@ -39,8 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                        help='identified outputs (default: camber_mean,camber_max,cl)')
     group.add_argument('--from', dest='source', metavar='FILE',
                        help='identify from recorded experiments, npz or MCAP bag')
-    group.add_argument('--processes', type=int, default=2, metavar='N',
-                       help='runs at the same time (default: 2)')
+    options.add_workers(parser)
     options.add_numerics(parser, 's')
     options.add_results(parser, 'write the model as npz')
     group = parser.add_argument_group('more results')
@@ -92,7 +91,7 @@ def _check(arguments: argparse.Namespace) -> tuple[Settings, Case]:
         if value is not None:
             changes[key] = value
     settings = parameters.load(arguments.settings, Settings, changes)
-    options.within('--processes', arguments.processes, 1, 64, 'processes')
+    options.workers(arguments)
     if arguments.source and arguments.outputs:
         raise BadInput('--outputs cannot change what was recorded: leave out --outputs or --from')
     for path in filter(None, (arguments.out, arguments.mat, arguments.json,
@@ -118,7 +117,7 @@ def _experiment(arguments: argparse.Namespace, settings: Settings, case: Case, n
     began = time.perf_counter()
     with bar('experiments', 's', arguments.quiet) as show:
         found = identify_plant(built.plant, built.rest, built.identity, settings, names,
-                               arguments.processes, lambda share: show(share, 1.0))
+                               options.workers(arguments), lambda share: show(share, 1.0))
     return found, built.identity, began
 
 

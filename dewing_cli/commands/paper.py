@@ -29,8 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help=f'main flow solver: {", ".join(engines.NAMES)} (default: '
                              f'{engines.NAMES[0]}, with --quick {engines.NAMES[1]}); the other '
                              'one runs beside it')
-    parser.add_argument('--jobs', type=int, default=2, metavar='N',
-                        help='processes at once (default: 2)')
+    options.add_workers(parser)
     options.add_results(parser, 'folder of report, numbers and finished runs (default: out/paper)')
     parser.set_defaults(out='out/paper')
 
@@ -40,12 +39,12 @@ def run(arguments: argparse.Namespace) -> int:
     from dewing_cli.paper.plan import make
     engine = arguments.engine or engines.NAMES[1 if arguments.quick else 0]
     options.one_of('--engine', engine, dict.fromkeys(engines.NAMES))
-    options.within('--jobs', arguments.jobs, 1, 64, 'processes')
+    workers = options.workers(arguments)
     folder = Path(arguments.out)
     for path in filter(None, (folder / REPORT, folder / NUMBERS, arguments.json)):
         check_free(path, arguments.force)
     plan = make(engine, arguments.quick)
-    found, seconds = compute(plan, folder, arguments.jobs, arguments.quiet)
+    found, seconds = compute(plan, folder, workers, arguments.quiet)
     record = write(plan, found, folder, seconds)
     if arguments.json:
         results.write_json(arguments.json, record, arguments.force)
@@ -55,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if record['failures'] else 0
 
 
-def compute(plan: Any, folder: Path, jobs: int, quiet: bool) -> tuple[dict, float]:
+def compute(plan: Any, folder: Path, where: Any, quiet: bool) -> tuple[dict, float]:
     """Return the results of all runs and the seconds spent; keep each as it finishes."""
     import time
 
@@ -75,7 +74,7 @@ def compute(plan: Any, folder: Path, jobs: int, quiet: bool) -> tuple[dict, floa
     began = time.perf_counter()
     try:
         with bar(f'{len(plan.runs) - len(known)} runs', quiet=quiet) as progress:
-            found = workers.execute(plan.runs, known, jobs, finish, progress)
+            found = workers.execute(plan.runs, known, where, finish, progress)
     except KeyboardInterrupt:
         print(f'dewing: kept {len(finished)} of {len(plan.runs)} runs in {folder / RUNS}',
               file=sys.stderr)

@@ -10,13 +10,13 @@ status is 1 only if no point succeeded.
 """
 
 import argparse
-import os
 from pathlib import Path
 from typing import Any
 
 from dewing_cli import options, results
 from dewing_cli.progress import bar
 from dewing_sim.files import check_free
+from dewing_sim.machine import jobs
 
 SHOWN = ('cl_mean', 'cl_amplitude', 'cd_mean', 'strouhal', 'camber_mean', 'y_star',
          'camber_max_x_c')
@@ -28,12 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group('sweep')
     group.add_argument('--vary', action='append', required=True, metavar='KEY=A,B,C',
                        help='a parameter of the case and its values; may be repeated')
-    where = group.add_mutually_exclusive_group()
-    where.add_argument('--jobs', type=int, metavar='N',
-                       help='processes of this machine (default: its cores)')
-    where.add_argument('--scheduler', metavar='ADDRESS',
-                       help='run on the dask cluster there, such as tcp://host:8786')
     group.add_argument('--retry', action='store_true', help='compute failed points again')
+    options.add_workers(parser, 'its cores')
     options.add_numerics(parser, 's')
     parser.add_argument('--skip', type=float, metavar='S',
                         help='leave out the first S seconds of the averages (default: half)')
@@ -43,13 +39,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compute what is missing, then print and write what there is, also when interrupted."""
-    from dewing_cli.sweep.cluster import require_extra
+    from dewing_cli.sweep.file import require_extra
     require_extra()
     table = _check(arguments)
+    workers = options.workers(arguments, jobs.cores)
     known = int((table.status > 0).sum())
     try:
         with bar('sweeping', 'points', arguments.quiet) as show:
-            _compute(arguments, table, show)
+            _compute(arguments, table, workers, show)
     finally:
         if table.status.any():
             _deliver(arguments, table, known)
@@ -67,8 +64,7 @@ def _check(arguments: argparse.Namespace) -> Any:
     for point in sweep.points:
         options.steps_of(arguments.duration, point.case.numerics.time_step, 's')
     options.within('--skip', skip, 0.0, 0.99 * arguments.duration, 's')
-    if arguments.jobs is not None:
-        options.within('--jobs', arguments.jobs, 1, 1024, 'processes')
+    options.workers(arguments, jobs.cores)
     if arguments.json:
         check_free(arguments.json, arguments.force)
     check_free(arguments.out, overwrite=True)
@@ -77,27 +73,19 @@ def _check(arguments: argparse.Namespace) -> Any:
     return Table(sweep)
 
 
-def _compute(arguments: argparse.Namespace, table: Any, show: Any) -> None:
+def _compute(arguments: argparse.Namespace, table: Any, workers: Any, show: Any) -> None:
     """Run the points that are missing, writing the file whenever some have come."""
-    from dewing_cli.sweep.cluster import run as run_points
-    from dewing_cli.sweep.sweep import MISSING
+    from dewing_cli.sweep.sweep import MISSING, run_points
     sweep = table.sweep
     wanted = [point for point in sweep.points if table.status[point.index] == MISSING]
     finished = len(sweep.points) - len(wanted)
     show(finished, len(sweep.points))
-    for batch in run_points(sweep, wanted, arguments.jobs or _cores(), arguments.scheduler):
+    for batch in run_points(sweep, wanted, workers):
         for point, result in batch:
             table.put(point.index, sweep.fingerprint(point), result)
         table.save(arguments.out, overwrite=True)
         finished += len(batch)
         show(finished, len(sweep.points))
-
-
-def _cores() -> int:
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:      # not on this system
-        return os.cpu_count() or 1
 
 
 def _deliver(arguments: argparse.Namespace, table: Any, known: int) -> None:

@@ -20,8 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--engine', action='append', metavar='NAME',
                         help=f'verify this flow solver: {", ".join(engines.NAMES)} or '
                              'package.module:Class; may be repeated (default: all of dewing)')
-    parser.add_argument('--jobs', type=int, metavar='N',
-                        help='processes at once (default: idle cores)')
+    options.add_workers(parser, 'idle cores')
     options.add_results(parser, 'folder of the page verification.md and its images')
 
 
@@ -30,8 +29,8 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = list(dict.fromkeys(arguments.engine or engines.NAMES))
     for engine in chosen:
         options.check_engine(engine)
-    if arguments.jobs is not None:
-        options.within('--jobs', arguments.jobs, 1, 1024, 'processes')
+    from dewing_sim.machine.jobs import idle_cores
+    workers = options.workers(arguments, idle_cores)
     if arguments.json:
         check_free(arguments.json, arguments.force)
 

@@ -6,15 +6,14 @@ import hashlib
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Callable, Mapping, Protocol
+from typing import Any, Mapping, Protocol
 
 import numpy as np
 
 from dewing_sim.errors import BadInput
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.machine import fingerprint as machine
-
-Tick = Callable[[float], None]          # hears the finished share of a run, 0 to 1
+from dewing_sim.machine.jobs import Tick
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,16 @@ from dewing_sim.identity import version
 TITLE = 'dewing sweep'
 FILL = 9.969209968386869e36     # NC_FILL_DOUBLE, which netCDF tools read as missing
 
+MISSING_EXTRA = "dewing sweep needs xarray: pip install 'dewing[sweep]'"
+
+
+def require_extra() -> None:
+    """Raise `BadInput` unless xarray is installed."""
+    try:
+        import xarray  # noqa: F401
+    except ImportError:
+        raise BadInput(MISSING_EXTRA) from None
+
 
 class Table:
     """The results of a sweep so far, as arrays over its axes."""

@@ -9,15 +9,19 @@ its constant `actuation.voltage`. Nothing here knows how points are distributed.
 import hashlib
 import itertools
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, NamedTuple, Sequence
+from functools import cached_property, partial
+from typing import Any, Iterator, NamedTuple, Sequence
 
 import numpy as np
 
 from dewing_cli.run_metrics import mean_name
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
+<<<<<<< HEAD
 from dewing_sim.inputs.base import Inputs
+=======
+from dewing_sim.machine import jobs
+>>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.machine.fingerprint import fingerprint
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
@@ -123,6 +127,21 @@ def run_point(case: Case, duration: float, skip: float) -> Result:
         return Result(DONE, '', _simulate(case, duration, skip))
     except DewingError as error:
         return Result(FAILED, f'{type(error).__name__}: {" ".join(str(error).split())}', {})
+
+
+def run_points(sweep: Sweep, points: Sequence[Point], workers: jobs.Workers,
+               ) -> Iterator[list[tuple[Point, Result]]]:
+    """Yield the results of ``points`` as they come, all that are there at a time.
+
+    A point whose process is killed, or that raises what no solver raises on purpose, is `LOST`.
+    Raises `BadInput` if no scheduler answers.
+    """
+    planned = {point.index: jobs.Job(partial(run_point, point.case, sweep.duration, sweep.skip))
+               for point in points}
+    by_index = {point.index: point for point in points}
+    for batch in jobs.run(planned, workers):
+        yield [(by_index[index], Result(LOST, outcome.reason, {})
+                if isinstance(outcome, jobs.Failed) else outcome) for index, outcome in batch]
 
 
 def _simulate(case: Case, duration: float, skip: float) -> dict[str, float]:

@@ -9,6 +9,7 @@ from dewing_sim import parameters
 from dewing_sim.build import Built
 from dewing_sim.machine import caches
 from dewing_sim.machine import fingerprint as machine
+from dewing_sim.machine.jobs import Workers
 from dewing_sim.model import Model
 from dewing_sim.rest.trim import fingerprint
 
@@ -26,7 +27,7 @@ def identify(built: Built, progress: Callable[[float], None] = lambda fraction: 
     if model is None:
         from dewing_sysid.identify import identify_plant
         model = identify_plant(built.plant, built.rest, built.identity, _settings(), OUTPUTS,
-                               progress=progress).model
+                               workers=Workers(2), progress=progress).model
         caches.keep(name, model.save)
     return model
 

@@ -7,10 +7,13 @@ passive one, which an operator can read off, but V_L^2, model and sampling time 
 """
 
 import dataclasses
+<<<<<<< HEAD
 import functools
 from concurrent.futures import ProcessPoolExecutor
+=======
+>>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dataclasses import dataclass
-from multiprocessing import get_context
+from functools import partial
 from typing import Any, Iterator, Sequence
 
 from dewing_control.law.registry import LAWS
@@ -22,7 +25,12 @@ from dewing_control.tuning.printed import printed_gains
 from dewing_sim import parameters
 from dewing_sim.build import Built, build_wing
 from dewing_sim.identity import Identity
+<<<<<<< HEAD
 from dewing_sim.inputs.disturbance import wall_pressure
+=======
+from dewing_sim.machine.jobs import HERE, Failed, Job, Workers
+from dewing_sim.machine.jobs import results as results_of
+>>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.parameters import Case
 from dewing_sim.wing import Wing
 
@@ -89,14 +97,22 @@ def run_scenario(plan: Plan, name: str, names: Sequence[str] = CONTROLLERS,
     return results
 
 
-def run_all(plan: Plan, scenarios: Sequence[str], names: Sequence[str], jobs: int,
-            ) -> Iterator[tuple[str, dict]]:
-    """Yield scenario and results, in the order of ``scenarios``, from ``jobs`` processes."""
-    if jobs == 1:
+def run_all(plan: Plan, scenarios: Sequence[str], names: Sequence[str],
+            workers: Workers = HERE) -> Iterator[tuple[str, dict]]:
+    """Yield scenario and results, in the order of ``scenarios``.
+
+    A single process is this one, so that nothing disturbs the computing times.
+    """
+    if workers == HERE:
         for name in scenarios:
             yield name, run_scenario(plan, name, names)
         return
-    with ProcessPoolExecutor(jobs, mp_context=get_context('spawn')) as pool:
-        runs = [pool.submit(run_scenario, plan, name, names) for name in scenarios]
-        for name, run in zip(scenarios, runs):
-            yield name, run.result()
+    there: dict[str, dict] = {}
+    waiting = list(scenarios)
+    jobs = {name: Job(partial(run_scenario, plan, name, names)) for name in scenarios}
+    for finished, outcome in results_of(jobs, workers):
+        if isinstance(outcome, Failed):
+            raise outcome.error
+        there[finished] = outcome
+        while waiting and waiting[0] in there:
+            yield waiting[0], there[waiting.pop(0)]

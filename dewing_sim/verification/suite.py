@@ -2,14 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """All studies, and how they are run: every computation once, spread over processes."""
 
-import multiprocessing
-import os
 import time
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
 from dewing_sim.errors import DewingError
+from dewing_sim.machine.jobs import Failed, Job, Workers, idle_cores, results
 from dewing_sim.verification import (
     added_mass,
     camber,
@@ -28,8 +26,6 @@ from dewing_sim.verification.study import Check, Run, Study
 STUDIES = tuple(module.STUDY for module in (
     rigid_plate, resolution, vortex, impulsive, added_mass, unsteady, moving_camber, camber,
     still_air, divergence, coupled))
-SINGLE_THREAD = ('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS',
-                 'NUMBA_NUM_THREADS')
 
 
 @dataclass(frozen=True)
@@ -53,17 +49,17 @@ class Verification:
         return [check for check in self.all_checks if not check.passed]
 
 
-def verify(engines: Sequence[str], quick: bool = False, jobs: int | None = None,
+def verify(engines: Sequence[str], quick: bool = False, workers: Workers | None = None,
            progress: Callable | None = None) -> Verification:
-    """Run every study on every engine; ``progress(done, total)`` counts computations.
+    """Run every study on every engine; ``progress(done, total)`` is in units of cost.
 
-    ``jobs`` processes work at once, by default as many as there are idle cores. A study of which
+    ``workers`` are by default as many processes as there are idle cores. A study of which
     a run fails is a missed gate of its own.
     """
     started = time.perf_counter()
     plan = {(study.name, engine): study.runs(engine, quick)
             for study in STUDIES for engine in engines}
-    done = execute({run for runs in plan.values() for run in runs.values()}, jobs, progress)
+    done = execute({run for runs in plan.values() for run in runs.values()}, workers, progress)
     checks: dict[str, list[Check]] = {}
     results: dict[str, dict[str, dict[str, Any]]] = {}
     for study in STUDIES:
@@ -102,35 +98,9 @@ def between_engines(checks: list[Check]) -> list[Check]:
     return pairs
 
 
-def execute(runs: set[Run], jobs: int | None = None, progress: Callable | None = None,
+def execute(runs: set[Run], workers: Workers | None = None, progress: Callable | None = None,
             ) -> dict[Run, Any]:
     """Return the result or `DewingError` of each run; the most expensive ones start first."""
-    ordered = sorted(runs, key=lambda run: (-run.cost, repr(run)))
-    results: dict[Run, Any] = {}
-    for name in SINGLE_THREAD:      # read when a new process loads its libraries
-        os.environ.setdefault(name, '1')
-    with ProcessPoolExecutor(jobs or idle_cores(),
-                             multiprocessing.get_context('spawn')) as pool:
-        futures = {pool.submit(run): run for run in ordered}
-        try:
-            for future in as_completed(futures):
-                results[futures[future]] = _result(future)
-                if progress:
-                    progress(len(results), len(ordered))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return results
-
-
-def _result(future: Future) -> Any:
-    try:
-        return future.result()
-    except DewingError as error:
-        return error
-
-
-def idle_cores() -> int:
-    """Return the number of cores that have nothing to do at present, at least one."""
-    cores = os.cpu_count() or 1
-    return max(1, min(cores, round(cores + 0.5 - os.getloadavg()[0])))
+    jobs = {run: Job(run, cost=run.cost) for run in sorted(runs, key=repr)}
+    return {run: outcome.error if isinstance(outcome, Failed) else outcome
+            for run, outcome in results(jobs, workers or Workers(idle_cores()), progress)}

@@ -31,7 +31,7 @@ def recorded():
     identity = Identity.of('synthetic', plant, plant.rest(), 1250.0**2,
                            parameters.to_mapping(case))
     planned = plan.make(parameters.load('sysid', Settings), identity)
-    runs = experiment.run_all(plant, plant.rest(), planned.names, list(planned.inputs.values()), 1)
+    runs = experiment.run_all(plant, plant.rest(), planned.names, list(planned.inputs.values()))
     experiment.save_records('records.npz', planned.records(dict(zip(planned.inputs, runs))),
                             identity)
 
@@ -82,7 +82,7 @@ def test_the_wing_itself_is_identified():
     (['--set', 'realisation.windows=1.0'], 'realisation.windows is not a parameter'),
     (['--set', 'flow.wind=1.0'], 'flow.wind is not a parameter'),
     (['--window', '-1'], 'realisation.window = -1.0 is out of range'),
-    (['--processes', '0'], '--processes 0 is out of range'),
+    (['--jobs', '0'], '--jobs 0 is out of range'),
     (['--duration', '0'], '--duration 0 s is out of range'),
     (['--from', 'missing.npz'], 'missing.npz: no such record'),
     (['--from', 'missing.mcap'], 'missing.mcap: cannot be read'),

@@ -28,6 +28,7 @@ from dewing_cli.paper.result import Result, fingerprint, keep, recall
 from dewing_cli.paper.section import Found, Row, Section
 from dewing_cli.paper.workers import Failure
 from dewing_sim.errors import RunFailed
+from dewing_sim.machine.jobs import Workers
 
 
 def test_a_result_is_kept_and_recalled_under_its_mark_only(tmp_path):
@@ -53,7 +54,7 @@ def test_runs_wait_for_what_they_need_and_known_ones_are_not_repeated(tmp_path):
     runs = {'last': Sum(needs=('middle', 'first')), 'middle': Sum(needs=('first',)),
             'first': Sum(log=str(log)), 'known': Sum(log=str(log))}
     kept, shares = {}, []
-    results = workers.execute(runs, {'known': Result({'total': 7})}, 2, kept.__setitem__,
+    results = workers.execute(runs, {'known': Result({'total': 7})}, Workers(2), kept.__setitem__,
                               lambda done, total: shares.append(done / total))
     assert {name: result.values['total'] for name, result in results.items()} == {
         'first': 1, 'middle': 2, 'last': 4, 'known': 7}
@@ -65,7 +66,7 @@ def test_runs_wait_for_what_they_need_and_known_ones_are_not_repeated(tmp_path):
 def test_a_failed_run_stops_only_those_that_need_it():
     runs = {'broken': Sum(fails=True), 'after': Sum(needs=('broken',)), 'beside': Sum()}
     kept = {}
-    results = workers.execute(runs, {}, 1, kept.__setitem__)
+    results = workers.execute(runs, {}, Workers(1), kept.__setitem__)
     assert results['broken'] == Failure('slack')
     assert 'broken' in results['after'].reason
     assert set(kept) == {'beside'}
@@ -80,7 +81,7 @@ def test_an_interrupt_ends_running_work_and_keeps_what_had_finished():
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        workers.execute(runs, {}, 2, kept.__setitem__, interrupt)
+        workers.execute(runs, {}, Workers(2), kept.__setitem__, interrupt)
     assert set(kept) == {'short'}
 
 
@@ -307,12 +308,12 @@ def test_finished_runs_are_used_again_and_changed_ones_are_not(tmp_path):
     log = tmp_path / 'log'
     runs = {'first': Sum(log=str(log)), 'second': Sum(needs=('first',), log=str(log))}
     made = dataclasses.replace(plan.make('conformal', True), runs=runs)
-    found, _ = paper.compute(made, tmp_path, 1, True)
+    found, _ = paper.compute(made, tmp_path, Workers(1), True)
     assert found['second'].values == {'total': 2} and log.read_text().count('run') == 2
-    paper.compute(made, tmp_path, 1, True)
+    paper.compute(made, tmp_path, Workers(1), True)
     assert log.read_text().count('run') == 2
     changed = runs | {'second': Sum(needs=('first',), log=str(log), cost=3.0)}
-    paper.compute(dataclasses.replace(made, runs=changed), tmp_path, 1, True)
+    paper.compute(dataclasses.replace(made, runs=changed), tmp_path, Workers(1), True)
     assert log.read_text().count('run') == 3
 
 

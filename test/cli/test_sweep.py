@@ -215,7 +215,7 @@ def test_the_status_is_1_if_no_point_succeeds(cluster, capsys):
 
 def start(*arguments):
     env = os.environ | {'OPENBLAS_NUM_THREADS': '1', 'NUMBA_NUM_THREADS': '1'}
-    return subprocess.Popen([sys.executable, '-m', 'dewing_control', 'sweep', *OPTIONS,
+    return subprocess.Popen([sys.executable, '-m', 'dewing_cli', 'sweep', *OPTIONS,
                              *arguments], env=env, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True, start_new_session=True)
 

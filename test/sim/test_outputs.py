@@ -78,7 +78,7 @@ def test_the_lock_step_watches_its_numbers():
 
 def test_it_is_identified_with_its_units_and_flown_as_a_reduced_plant(tmp_path):
     built, settings = build_foreign(WORD, CASE), parameters.load('sysid', Settings, SHORT)
-    found = identify_plant(built.plant, built.rest, built.identity, settings, NAMES, processes=1)
+    found = identify_plant(built.plant, built.rest, built.identity, settings, NAMES)
     assert found.model.units == ('m', 'rad', 'J/m')
     assert found.model.fit['window']['edge_slope'] > 99.9
     found.model.save(tmp_path / 'model.npz')
@@ -95,7 +95,7 @@ def test_it_is_identified_with_its_units_and_flown_as_a_reduced_plant(tmp_path):
 def test_what_it_does_not_have_cannot_be_identified():
     built, settings = build_foreign(WORD, CASE), parameters.load('sysid', Settings, SHORT)
     with pytest.raises(BadInput, match="output 'cl' is unknown; known: camber_mean, camber_max"):
-        identify_plant(built.plant, built.rest, built.identity, settings, processes=1)
+        identify_plant(built.plant, built.rest, built.identity, settings)
 
 
 class Doublet(Node):

@@ -12,7 +12,11 @@ from synthetic_plant import DAMPING, FREQUENCIES, SyntheticPlant
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+<<<<<<< HEAD
 from dewing_sim.inputs.base import Inputs
+=======
+from dewing_sim.machine.jobs import HERE, Workers
+>>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.model import Model
 from dewing_sysid import experiment, figures, plan
 from dewing_sysid.identify import concerns, identify, identify_plant, judge, nrmse_fit, report
@@ -40,9 +44,9 @@ def settings(**changes):
     return parameters.load('sysid', Settings, changed)
 
 
-def found_on(plant, chosen, case=CASE, start=None, processes=1):
+def found_on(plant, chosen, case=CASE, start=None, workers=HERE):
     start = plant.rest() if start is None else start
-    return identify_plant(plant, start, identity_of(plant, case), chosen, processes=processes)
+    return identify_plant(plant, start, identity_of(plant, case), chosen, workers=workers)
 
 
 @pytest.fixture(scope='module')
@@ -155,7 +159,8 @@ def test_a_doublet_about_a_raised_operating_point_gives_the_same_poles():
 
 
 def test_two_processes_give_the_records_of_one():
-    one, two = (found_on(SyntheticPlant(), settings(), processes=n).records for n in (1, 2))
+    one, two = (found_on(SyntheticPlant(), settings(), workers=n).records
+                for n in (HERE, Workers(2)))
     assert list(one) == list(two)
     for run in one:
         assert np.array_equal(one[run].outputs, two[run].outputs)

@@ -55,7 +55,7 @@ def session():
 def offline(model):
     built = build_reduced(model)
     return identify_plant(built.plant, built.rest, built.identity,
-                          parameters.load('sysid', Settings, SHORT), processes=1)
+                          parameters.load('sysid', Settings, SHORT))
 
 
 def start(session, model, tmp_path, **changes):

@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 
 from dewing_cli.main import main
+<<<<<<< HEAD
 from dewing_sim.fluid.engines import NAMES
+=======
+from dewing_sim.fluid.engines import ENGINES
+from dewing_sim.machine.jobs import Workers
+>>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.verification import report, suite
 from dewing_sim.verification.closed_forms import (
     frequencies_in_air,
@@ -79,7 +84,7 @@ def test_a_run_that_fails_is_a_missed_gate(monkeypatch):
     study = Study('broken', 'Broken', 'Text.', lambda engine, quick: {'too coarse': coarse},
                   lambda engine, results: [])
     monkeypatch.setattr(suite, 'STUDIES', (study,))
-    verification = suite.verify(['finite_volume'], jobs=1)
+    verification = suite.verify(['finite_volume'], workers=Workers(1))
     missed, = verification.missed
     assert missed.name == 'Broken: failed runs'
     assert missed.source.startswith('too coarse: the flow')
