@@ -3,7 +3,7 @@
 """Jobs in processes of this machine, one thread each.
 
 A process that is killed takes the pool of `concurrent.futures` with it. The jobs that were running
-then run again, one at a time, so that the one whose process is killed once more is told from the
+then run again, one at a time, so that the one whose process is killed every time is told from the
 others.
 """
 
@@ -12,6 +12,7 @@ import os
 import pickle
 import signal
 import threading
+from collections import Counter
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -21,7 +22,8 @@ from typing import Any, Mapping
 from dewing_sim.errors import RunFailed
 from dewing_sim.machine.jobs import SINGLE_THREAD, Failed, Job, execute
 
-KILLED = 'its process was killed, twice: perhaps the memory is too small for so many at a time'
+CHANCES = 2                 # alone
+KILLED = 'its process was killed again and again; perhaps there is too little memory'
 
 _shares: Any = None
 
@@ -59,6 +61,7 @@ class Processes:
         self._suspects: list[tuple[int, bytes]] = []
         self._refused: list[tuple[int, Failed]] = []
         self._alone = False
+        self._kills: Counter[int] = Counter()      # of jobs that were alone
         for name in SINGLE_THREAD:      # read when a new process loads its libraries
             os.environ.setdefault(name, '1')
         self._open()
@@ -107,15 +110,18 @@ class Processes:
         return outcomes
 
     def _recover(self, killed: list) -> list[tuple[int, Any]]:
-        """Begin a new pool; return the failure of a job that was killed while it ran alone."""
+        """Begin a new pool; return the failure of a job that was killed alone too often."""
         killed += self._running.values()
         self._running.clear()
         self.close(False)
         self._open()
         if self._alone:
             self._alone = False
-            return [(number, Failed(RunFailed(KILLED), lost=True)) for number, _ in killed]
-        self._suspects = killed
+            number = killed[0][0]
+            self._kills[number] += 1
+            if self._kills[number] == CHANCES:
+                return [(number, Failed(RunFailed(KILLED), lost=True))]
+        self._suspects += killed
         return []
 
     def share(self, number: int) -> float:
