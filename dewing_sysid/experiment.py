@@ -15,11 +15,8 @@ from scipy.integrate import trapezoid
 from dewing_sim.errors import BadInput, Slack
 from dewing_sim.files import new_file
 from dewing_sim.identity import Identity
-<<<<<<< HEAD
 from dewing_sim.inputs.base import Inputs
-=======
 from dewing_sim.machine.jobs import HERE, Failed, Job, Workers, results
->>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.plant import Outputs, Plant
 from dewing_sim.quantities import Absent
 

@@ -34,7 +34,7 @@ SHORT = {
     'material': '--set membrane.elements=8 --out figures',
     'identify': '--grid fast --set numerics.trim_time=0.1 --set membrane.elements=16'
                 ' --set experiment.record=0.4 --set fresh.record=0.2 --window 0.2 --order 4'
-                ' --processes 1',
+                ' --jobs 1',
     'bag': '', 'plot': '',
 }
 # Blocks that `make long` executes, by their first line.

@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out:
         check_free(f'{arguments.out}/{report.PAGE}', arguments.force)
     with bar('verifying', quiet=arguments.quiet) as show:
-        verification = suite.verify(chosen, arguments.quick, arguments.jobs, show)
+        verification = suite.verify(chosen, arguments.quick, workers, show)
     if not arguments.quiet:
         print(report.text_table(verification.all_checks))
         print(f'{report.summary(verification)}; {verification.seconds:.0f} s')

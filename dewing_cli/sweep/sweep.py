@@ -17,11 +17,8 @@ import numpy as np
 from dewing_cli.run_metrics import mean_name
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
-<<<<<<< HEAD
 from dewing_sim.inputs.base import Inputs
-=======
 from dewing_sim.machine import jobs
->>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.machine.fingerprint import fingerprint
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs

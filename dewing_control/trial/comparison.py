@@ -7,11 +7,6 @@ passive one, which an operator can read off, but V_L^2, model and sampling time 
 """
 
 import dataclasses
-<<<<<<< HEAD
-import functools
-from concurrent.futures import ProcessPoolExecutor
-=======
->>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Iterator, Sequence
@@ -25,12 +20,9 @@ from dewing_control.tuning.printed import printed_gains
 from dewing_sim import parameters
 from dewing_sim.build import Built, build_wing
 from dewing_sim.identity import Identity
-<<<<<<< HEAD
 from dewing_sim.inputs.disturbance import wall_pressure
-=======
 from dewing_sim.machine.jobs import HERE, Failed, Job, Workers
 from dewing_sim.machine.jobs import results as results_of
->>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.parameters import Case
 from dewing_sim.wing import Wing
 
@@ -56,7 +48,7 @@ def build(case: Case, scenario: Scenario) -> Built:
     built = build_wing(changed)
     if scenario.second is None:
         return built
-    second = functools.partial(wall_pressure, scenario.second)
+    second = partial(wall_pressure, scenario.second)
     return dataclasses.replace(built, plant=Wing(changed, wall_pressure=second))
 
 

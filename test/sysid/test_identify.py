@@ -12,11 +12,8 @@ from synthetic_plant import DAMPING, FREQUENCIES, SyntheticPlant
 from dewing_sim import parameters, reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
-<<<<<<< HEAD
 from dewing_sim.inputs.base import Inputs
-=======
 from dewing_sim.machine.jobs import HERE, Workers
->>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.model import Model
 from dewing_sysid import experiment, figures, plan
 from dewing_sysid.identify import concerns, identify, identify_plant, judge, nrmse_fit, report

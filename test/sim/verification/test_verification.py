@@ -9,12 +9,8 @@ import numpy as np
 import pytest
 
 from dewing_cli.main import main
-<<<<<<< HEAD
 from dewing_sim.fluid.engines import NAMES
-=======
-from dewing_sim.fluid.engines import ENGINES
 from dewing_sim.machine.jobs import Workers
->>>>>>> 0354769 (Run verification, paper, comparison, sweep and experiments by one runner of jobs)
 from dewing_sim.verification import report, suite
 from dewing_sim.verification.closed_forms import (
     frequencies_in_air,
