@@ -82,7 +82,7 @@ class LockStep:
     def _observe(self, state: Any) -> Outputs:
         outputs = self.plant.observe(state)
         known = schema(type(outputs))
-        for name, value in known.given(outputs, known.scalars).items():
+        for name, value in zip(*known.given(outputs, known.scalars)):
             if not math.isfinite(value):
                 raise Diverged(f'{name} = {value} after step {self.steps + 1}', self.state)
         return outputs

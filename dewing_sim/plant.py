@@ -60,8 +60,8 @@ SCALARS = schema(Outputs).scalars
 def units_of(outputs: Outputs) -> dict[str, str]:
     """Return the units of what a plant with ``outputs`` has that responds to V^2, by name."""
     known = schema(type(outputs))
-    return {name: known.units[name] for name in known.given(outputs, known.scalars)
-            if name in known.units}
+    names, _ = known.given(outputs, known.scalars)
+    return {name: known.units[name] for name in names if name in known.units}
 
 
 MEANING = """What a controller sees of a plant at one instant (SI); ``v_squared`` led here.
@@ -81,9 +81,8 @@ class Seen:
     def of(outputs: Outputs) -> 'Measurement':
         """Return the measured part of ``outputs``, without what the plant does not have."""
         known = schema(type(outputs))
-        values = known.given(outputs, known.measured)
-        return measurement_type(tuple(values))(round(outputs.time * 1.0e9) * 1.0e-9,
-                                               *values.values())
+        names, values = known.given(outputs, known.measured)
+        return measurement_type(names)(round(outputs.time * 1.0e9) * 1.0e-9, *values)
 
     def __getattr__(self, name: str) -> Any:
         raise Absent(f'measurement without {name}; it has {", ".join(self._fields[1:])}')

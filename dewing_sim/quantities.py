@@ -80,13 +80,16 @@ class Schema:
         self._values = {names: _getter(names) for names in (
             self.scalars, self.measured, self.columns, self.shapes)}
 
-    def given(self, outputs: Any, names: tuple[str, ...]) -> dict[str, Any]:
-        """Return those of ``names`` that the plant of ``outputs`` has, as they are not None.
+    def given(self, outputs: Any, names: tuple[str, ...]) -> tuple[tuple[str, ...], tuple]:
+        """Return those of ``names`` that the plant of ``outputs`` has, not None, and their values.
 
         ``names`` is `scalars`, `measured` or, of what is recorded, `columns` or `shapes`.
         """
-        return {name: value for name, value in zip(names, self._values[names](outputs))
-                if value is not None}
+        values = self._values[names](outputs)
+        held = [k for k, value in enumerate(values) if value is not None]
+        if len(held) == len(names):     # of the wing, at each step
+            return names, values
+        return tuple(names[k] for k in held), tuple(values[k] for k in held)
 
 
 @functools.cache

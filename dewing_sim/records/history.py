@@ -130,15 +130,15 @@ class Recorder:
         Raises `BadInput` if the plant has other outputs than at the first instant.
         """
         known = schema(type(outputs))
-        row, shape = (known.given(outputs, names) for names in (known.columns, known.shapes))
-        if not (np.isfinite([*row.values()]).all()
-                and all(np.isfinite(part).all() for part in shape.values())):
+        columns, row = known.given(outputs, known.columns)
+        shapes, shape = known.given(outputs, known.shapes)
+        if not (np.isfinite(row).all() and all(np.isfinite(part).all() for part in shape)):
             raise Diverged(f'the outputs at t = {outputs.time:g} s are not finite; '
                            f'a smaller time step may help')
-        self._settle(known, (tuple(row), tuple(shape)), outputs.time)
+        self._settle(known, (columns, shapes), outputs.time)
         if len(self._scalars) % self._every == 0:
-            self._shapes.append((outputs.time, *shape.values()))
-        self._scalars.append(tuple(row.values()))
+            self._shapes.append((outputs.time, *shape))
+        self._scalars.append(row)
 
     def _settle(self, known: Schema, names: tuple[tuple[str, ...], ...], time: float) -> None:
         """Take the outputs of the first instant for those of the run."""
