@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import BinaryIO, Iterator
 
 import numpy as np
+import yaml
 
 from dewing_sim.errors import BadInput
 
@@ -64,11 +65,12 @@ def read_npz(path: str | Path, what: str) -> Iterator[dict[str, np.ndarray]]:
         raise BadInput(f'{path}: not {what} ({_sentence(error)})') from None
     try:
         yield arrays
-    except (KeyError, IndexError, ValueError, TypeError, AttributeError) as error:
+    except (KeyError, IndexError, ValueError, TypeError, AttributeError,
+            yaml.YAMLError) as error:
         raise BadInput(f'{path}: not {what} ({_sentence(error)})') from None
 
 
 def _sentence(error: Exception) -> str:
     if isinstance(error, KeyError):
         return f'it holds no {error}'
-    return str(error) or type(error).__name__
+    return ' '.join(str(error).split()) or type(error).__name__

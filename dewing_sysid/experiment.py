@@ -3,7 +3,6 @@
 """Run experiments on a plant: excited and undisturbed runs branch from one state."""
 
 import pickle
-import zipfile
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from dewing_sim.errors import BadInput, Slack
-from dewing_sim.files import new_file
+from dewing_sim.files import new_file, read_npz
 from dewing_sim.identity import Identity
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine.jobs import HERE, Failed, Job, Workers, results
@@ -122,15 +121,10 @@ def save_records(path: str | Path, records: dict[str, Record], identity: Identit
 
 def load_records(path: str | Path) -> tuple[dict[str, Record], Identity]:
     """Return records by run and the plant's identity; `BadInput` if that is not in the file."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            runs = [key[:-len('/v_squared')] for key in file.files if key.endswith('/v_squared')]
-            identity = Identity.from_yaml(str(file['identity']))
-            return {run: _record(file, run) for run in runs}, identity
-    except OSError:
-        raise BadInput(f'{path}: no such record') from None
-    except (KeyError, ValueError, zipfile.BadZipFile) as error:
-        raise BadInput(f'{path}: not a record of an experiment ({error})') from None
+    with read_npz(path, 'a record of an experiment') as arrays:
+        runs = [key[:-len('/v_squared')] for key in arrays if key.endswith('/v_squared')]
+        identity = Identity.from_yaml(str(arrays['identity']))
+        return {run: _record(arrays, run) for run in runs}, identity
 
 
 def _record(file: Any, run: str) -> Record:

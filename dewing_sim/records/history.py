@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Outputs stacked in time, and their file: an npz that carries the case it came from."""
 
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterable
@@ -12,7 +11,7 @@ import yaml
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Diverged
-from dewing_sim.files import new_file
+from dewing_sim.files import new_file, read_npz
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import Absent, Schema, schema
@@ -79,20 +78,13 @@ class History:
         A file of version 0.1 does not say what it holds: its columns are those that it has of
         the present outputs.
         """
-        try:
-            with np.load(path, allow_pickle=False) as archive:
-                arrays = dict(archive)
+        with read_npz(path, 'the history of a run') as arrays:
             said = _described(arrays)
             columns, shapes = ({name: arrays[name] for name in said[kind]}
                                for kind in ('columns', 'shapes'))
             history = cls(columns, arrays['shape_time'], shapes,
                           {**said['columns'], **said['shapes']}, str(arrays['case']))
             len(history)
-        except FileNotFoundError:
-            raise BadInput(f'{path}: no such file') from None
-        except (OSError, KeyError, ValueError, TypeError, EOFError, AttributeError,
-                zipfile.BadZipFile, yaml.YAMLError):
-            raise BadInput(f'{path}: not the history of a run') from None
         for name, array in {**columns, 'shape_time': history.shape_time, **shapes}.items():
             if not np.all(np.isfinite(array)):
                 raise BadInput(f'{path}: {name} holds numbers that are not finite')

@@ -84,7 +84,7 @@ def test_the_wing_itself_is_identified():
     (['--window', '-1'], 'realisation.window = -1.0 is out of range'),
     (['--jobs', '0'], '--jobs 0 is out of range'),
     (['--duration', '0'], '--duration 0 s is out of range'),
-    (['--from', 'missing.npz'], 'missing.npz: no such record'),
+    (['--from', 'missing.npz'], 'missing.npz: no such file'),
     (['--from', 'missing.mcap'], 'missing.mcap: cannot be read'),
     (['--from', 'x.npz', '--outputs', 'cl'], 'leave out --outputs or --from'),
     (['--settings', 'paper'], 'is not a parameter'),
