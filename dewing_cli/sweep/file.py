@@ -147,6 +147,6 @@ def _require_same(sweep: Sweep, stored: Any, path: str | Path) -> None:
 
 def _stored_result(stored: Any, index: tuple[int, ...]) -> Result:
     metrics = {name: float(stored[name].values[index]) for name in METRICS
-               if np.isfinite(stored[name].values[index])}
+               if name in stored and np.isfinite(stored[name].values[index])}
     return Result(int(stored['status'].values[index]), str(stored['reason'].values[index]),
                   metrics)

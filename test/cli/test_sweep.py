@@ -118,6 +118,16 @@ def test_a_file_gives_back_every_result_and_holds_no_nan():
     assert again.result((1, 1)).status == 0             # its inputs were others
 
 
+def test_a_file_without_later_outputs_gives_back_what_it_has():
+    """As those of version 0.1, which knew neither the mean field nor the capacitance."""
+    filled(f'{ANGLE}=2.0').save('sweep.nc')
+    stored = xarray.load_dataset('sweep.nc')
+    stored.drop_vars(['electric_field_mean', 'capacitance_mean']).to_netcdf(
+        'sweep.nc', engine='scipy')
+    metrics = resume(make(f'{ANGLE}=2.0'), 'sweep.nc').result((0,)).metrics
+    assert metrics['cl_mean'] == 0.0 and 'capacitance_mean' not in metrics
+
+
 def test_a_result_that_is_not_finite_is_refused():
     table = Table(make(f'{ANGLE}=2.0'))
     with pytest.raises(RunFailed, match='cl_mean = nan'):
