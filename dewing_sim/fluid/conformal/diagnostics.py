@@ -12,9 +12,9 @@ of a state, and the motion of the grid is its last step.
 
 import numpy as np
 
-from dewing_sim.fluid.conformal.exterior import Exterior
+from dewing_sim.fluid.conformal.geometry.exterior import Exterior
+from dewing_sim.fluid.conformal.geometry.mapping import Map
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.field import FlowField, Patch
 
 

@@ -13,22 +13,29 @@ edges, to which the response is fitted by a sum.  On another shape the w of the 
 leaves a little slip, and then the h^2 w of the arc for that: slip depends on h^2 w only, so that
 it is gone.  The latter alone would do, but near the edges its w jumps where the table of arcs
 changes place, and the lift with it.
+
+Camber moves the edges along xi, by 2 y/c for an arc.  What they need is made when they first come
+near a place and kept, so that a wing that bends to and fro does not pay again.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
 from scipy.linalg import eigh
 
+from dewing_sim.fluid.conformal.geometry.mapping import Map
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.poisson import Poisson
+from dewing_sim.fluid.conformal.transport import extrapolation_share
 from dewing_sim.machine.kernels import stage
 
 BLOCK = 4                   # modes added at once; divides the number of nodes
 NEGLIGIBLE_SLIP = 1.0e-6
 LARGEST_SLIP = 1.5      # shed in one step: 0.8 at an impulsive start, 0.15 later in a sound run
 HIGH_SLIP = 0.5 * LARGEST_SLIP
+SPACING = 0.1               # steps in xi between the places of edges that are tabulated
 NEGLIGIBLE = 1.0e-8         # share of a wall vorticity beyond which its response is cut off
 
 
@@ -126,3 +133,34 @@ def remove(influence, slip, h2, w, h2_w, exactly):
             h2_w[i, j] += change
             w[i, j] += change / h2[i, j]
     return reach
+
+
+@dataclass(frozen=True)
+class Edges:
+    """For one place of both edges: no slip and the share of second-order extrapolation."""
+
+    influence: Influence
+    share: np.ndarray               # (n, rows)
+
+
+class EdgeTable:
+    """All places visited so far."""
+
+    def __init__(self, grid: Grid, poisson: Poisson, nu: float, dt: float):
+        """Prepare the table for one viscosity and dt (c/U)."""
+        self._grid, self._poisson, self._nu, self._dt = grid, poisson, nu, dt
+        self._table: dict[tuple[int, int], Edges] = {}
+
+    def near(self, m: Map) -> Edges:
+        """Return the entry nearest to the edges of ``m``."""
+        spacing = SPACING * self._grid.step
+        _, trailing, leading = m.edges.tolist()
+        place = (round(trailing / spacing), round((leading - np.pi) / spacing))
+        if place not in self._table:
+            self._table[place] = self._make(place[0] * spacing, np.pi + place[1] * spacing)
+        return self._table[place]
+
+    def _make(self, trailing: float, leading: float) -> Edges:
+        return Edges(Influence.of(self._grid, self._poisson, trailing, leading, self._nu,
+                                  self._dt),
+                     extrapolation_share(self._grid, trailing, leading, self._dt))

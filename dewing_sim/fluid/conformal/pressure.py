@@ -17,9 +17,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
+from dewing_sim.fluid.conformal.fourier.modes import line_modes, line_values
+from dewing_sim.fluid.conformal.fourier.stockham import transform
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.spectral import line_modes, line_values
-from dewing_sim.fluid.conformal.stockham import transform
 from dewing_sim.machine.kernels import kernel, stage, summing_kernel
 
 

@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.fluid.conformal import adi, noslip, poisson, pressure, spectral, transport
-from dewing_sim.fluid.conformal.exterior import Exterior
+from dewing_sim.fluid.conformal import adi, noslip, poisson, pressure, transport
+from dewing_sim.fluid.conformal.fourier import modes
+from dewing_sim.fluid.conformal.fourier.stockham import Buffers
+from dewing_sim.fluid.conformal.geometry.exterior import Exterior, measure
 from dewing_sim.fluid.conformal.grid import Grid, Strip
-from dewing_sim.fluid.conformal.metric import measure
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.pressure import WallPressure
-from dewing_sim.fluid.conformal.stockham import Buffers
 from dewing_sim.machine.kernels import kernel, scratch, stage
 
 
@@ -74,7 +74,7 @@ def advance(w_now, w_before, q_now, q_before, psi_now, psi_before, circulation, 
     w, outflow = _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, share,
                             scale, sin_corner, solver)
     circulation += solver.dt * outflow
-    required = spectral.line_modes(-u_wall - 2.0 * scale * sin_node, f.buffers, plan)
+    required = modes.line_modes(-u_wall - 2.0 * scale * sin_node, f.buffers, plan)
     q, psi, slip = _close(w, v_wall, required, circulation, influence, solver)
     transport.fluxes(psi, sin_corner, scale, solver.grid, 0, len(psi), f.v, f.u)
     p = pressure.wall_head(solver.wall_pressure, w, f.v, f.u, v_wall, u_wall, acceleration,
@@ -129,11 +129,11 @@ def _close(w, v_wall, required, circulation, influence, solver):
         for j in range(rows):
             q[i, j] = f.h2[i, j] * w[i, j]
     outer = n * circulation / (2.0 * np.pi)
-    spectral.to_modes(q, rows, f.buffers, plan, f.q_hat)
-    psi_wall = spectral.line_modes(v_wall, f.buffers, plan) * solver.poisson.integral
+    modes.to_modes(q, rows, f.buffers, plan, f.q_hat)
+    psi_wall = modes.line_modes(v_wall, f.buffers, plan) * solver.poisson.integral
     largest = 0.0
     for exactly in (False, True):           # the second takes what the first leaves on no arc
-        slip = spectral.line_values(
+        slip = modes.line_values(
             poisson.wall_slope(solver.poisson, f.q_hat, psi_wall, outer) - required, f.buffers,
             plan)
         fastest = _largest(slip)
@@ -141,10 +141,10 @@ def _close(w, v_wall, required, circulation, influence, solver):
         if not noslip.NEGLIGIBLE_SLIP < fastest < noslip.LARGEST_SLIP:
             break
         reach = noslip.remove(influence, slip, f.h2, w, q, exactly)
-        spectral.to_modes(q, reach, f.buffers, plan, f.q_hat)
+        modes.to_modes(q, reach, f.buffers, plan, f.q_hat)
     poisson.solve(solver.poisson, f.q_hat, psi_wall, outer, f.psi_hat)
     poisson.to_corners(solver.poisson, f.psi_hat, required, outer, f.q_hat)
-    spectral.to_field(f.q_hat, f.buffers, plan, psi)
+    modes.to_field(f.q_hat, f.buffers, plan, psi)
     return q, psi, largest
 
 

@@ -14,8 +14,8 @@ from dewing_sim.fluid.base import EDGE, Wall
 from dewing_sim.fluid.conformal import noslip
 from dewing_sim.fluid.conformal.diagnostics import courant
 from dewing_sim.fluid.conformal.engine import Conformal
+from dewing_sim.fluid.conformal.geometry.exterior import metric_and_flux
 from dewing_sim.fluid.conformal.grid import Grid, Preset
-from dewing_sim.fluid.conformal.metric import metric_and_flux
 from dewing_sim.fluid.finite_volume.engine import FiniteVolume
 from dewing_sim.fluid.finite_volume.grid import build
 from dewing_sim.fluid.finite_volume.presets import Spacing
@@ -67,7 +67,8 @@ def test_the_numbers_are_of_the_fluxes_of_the_step_less_those_of_the_grid(engine
         state = engine.correct(engine.predict(state, wall), wall.velocity)
     fields = engine.solver.fields
     h2, grid_v, grid_u = metric_and_flux(
-        engine.solver.exterior, state.map, (state.shape - state.shape_before) / engine.dt,
+        engine.solver.exterior, state.shape, state.map.scale,
+        (state.shape - state.shape_before) / engine.dt,
         (state.edges[0] - state.edges_before[0]) / engine.dt)
     v = 0.5 * (fields.v[:, 1:] + fields.v[:, :-1]) - grid_v[:, 1:]
     u = (0.5 * (fields.u + np.roll(fields.u, 1, axis=0)) - grid_u)[:, 1:]

@@ -12,8 +12,8 @@ from dewing_sim.coupling.load import Load
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
-from dewing_sim.fluid.conformal.frame import Frame
-from dewing_sim.fluid.conformal.metric import metric_and_flux
+from dewing_sim.fluid.conformal.geometry.exterior import metric_and_flux
+from dewing_sim.fluid.conformal.geometry.frame import Frame
 from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.inflow_schedule import InflowSchedule
@@ -126,7 +126,8 @@ def test_turning_moves_the_grid_as_a_rigid_body():
     m = mapping.follow(parabola(grid.columns, 0.03, 0.0).height, mapping.flat())
     frame = Frame.of(Inflow(1.0, pitch_rate=-2.0, pivot=0.3), grid)
     pivot = 0.3 * (np.arange(len(m.shape)) == 0)
-    _, g_v, g_u = metric_and_flux(fluid.solver.exterior, m, m.shape - pivot, m.scale)
+    _, g_v, g_u = metric_and_flux(
+        fluid.solver.exterior, m.shape, m.scale, m.shape - pivot, m.scale)
     flux = 2.0j * (g_v + 1j * g_u)                      # V + i U of turning at the rate 2
     stream, near = frame.grid_stream(m), (slice(None), slice(1, 30))
     v = (stream - np.roll(stream, 1, axis=0))[near] / grid.step

@@ -9,15 +9,21 @@ from scipy import fft
 from dewing_sim.errors import BadInput, Diverged, NotConverged
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
-from dewing_sim.fluid.conformal import adi, metric, poisson, spectral
+from dewing_sim.fluid.conformal import adi, poisson
 from dewing_sim.fluid.conformal.engine import Conformal
-from dewing_sim.fluid.conformal.exterior import Exterior
+from dewing_sim.fluid.conformal.fourier.modes import (
+    Plan,
+    line_modes,
+    line_values,
+    to_field,
+    to_modes,
+)
+from dewing_sim.fluid.conformal.fourier.stockham import Buffers, TwiddleFactors, transform
+from dewing_sim.fluid.conformal.geometry.exterior import Exterior, metric_and_flux
+from dewing_sim.fluid.conformal.geometry.mapping import Mapping
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.mapping import Mapping
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.presets import PRESETS, Preset
-from dewing_sim.fluid.conformal.spectral import Plan
-from dewing_sim.fluid.conformal.stockham import Buffers, TwiddleFactors, transform
 
 COARSE = Preset(48, 40, 0.016)
 ALPHA = np.radians(4.0)
@@ -95,21 +101,21 @@ def test_other_factors_than_two_and_three_are_refused():
 def test_modes_of_a_field_and_back(rows):
     n, plan, buffers = 24, Plan.of(24), Buffers.of(24 * 24)
     field, modes = np.random.default_rng(4).normal(size=(n, 24)), np.zeros((24, n + 2))
-    spectral.to_modes(field, rows, buffers, plan, modes)
+    to_modes(field, rows, buffers, plan, modes)
     exact = fft.rfft(field.T, axis=1)
     assert complex_modes(modes[:rows]) == pytest.approx(exact[:rows], abs=1.0e-13)
     assert not modes[rows:].any()
     back = np.empty_like(field)
     exact[:, [0, -1]] += 1.0j           # no part of a real field
-    spectral.to_field(parts(exact), buffers, plan, back)
+    to_field(parts(exact), buffers, plan, back)
     assert back == pytest.approx(field, abs=1.0e-13)
 
 
 def test_modes_of_a_line_and_back():
     values, plan, buffers = np.random.default_rng(4).normal(size=24), Plan.of(24), Buffers.of(24)
-    modes = spectral.line_modes(values, buffers, plan)
+    modes = line_modes(values, buffers, plan)
     assert modes == pytest.approx(fft.rfft(values), abs=1.0e-13)
-    assert spectral.line_values(modes, buffers, plan) == pytest.approx(values, abs=1.0e-13)
+    assert line_values(modes, buffers, plan) == pytest.approx(values, abs=1.0e-13)
 
 
 def solved(grid: Grid, q_hat: np.ndarray, wall: np.ndarray, outer: float):
@@ -161,7 +167,8 @@ def test_map_of_a_circular_arc_is_joukowskis(camber):
     line = mapping.wall(found)
     assert line.place.imag == pytest.approx(
         np.interp(line.place.real, grid.columns, arc(grid.columns, camber)), abs=1.0e-3 * camber)
-    assert np.abs(line.slope)**2 == pytest.approx(metric.metric(exterior, found)[:, 0],
+    h2, _, _ = metric_and_flux(exterior, found.shape, found.scale, 0.0 * found.shape, 0.0)
+    assert np.abs(line.slope)**2 == pytest.approx(h2[:, 0],
                                                   abs=1.0e-13)
 
 

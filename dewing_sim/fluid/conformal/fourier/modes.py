@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.fluid.conformal.stockham import TwiddleFactors, transform
+from dewing_sim.fluid.conformal.fourier.stockham import TwiddleFactors, transform
 from dewing_sim.machine.kernels import kernel
 
 

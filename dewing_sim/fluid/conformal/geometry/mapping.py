@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.errors import NotConverged
-from dewing_sim.fluid.conformal.exterior import Exterior, wall_series
-from dewing_sim.fluid.conformal.spectral import line_modes
-from dewing_sim.fluid.conformal.stockham import Buffers
+from dewing_sim.fluid.conformal.fourier.modes import line_modes
+from dewing_sim.fluid.conformal.fourier.stockham import Buffers
+from dewing_sim.fluid.conformal.geometry.exterior import Exterior, wall_series
 from dewing_sim.machine.kernels import kernel, stage
 
 TOLERANCE = 1.0e-8          # chords, of the last change; the next would be a hundredth of it

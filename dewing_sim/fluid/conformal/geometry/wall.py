@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.fluid.base import Wall
-from dewing_sim.fluid.conformal.exterior import Exterior
-from dewing_sim.fluid.conformal.mapping import Line, Map, Mapping
+from dewing_sim.fluid.conformal.geometry.exterior import Exterior
+from dewing_sim.fluid.conformal.geometry.mapping import Line, Map, Mapping
 from dewing_sim.machine.kernels import kernel
 
 

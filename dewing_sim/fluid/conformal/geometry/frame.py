@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
-from dewing_sim.fluid.conformal.geometry import WallGeometry, WallMotion
+from dewing_sim.fluid.conformal.geometry.mapping import Map
+from dewing_sim.fluid.conformal.geometry.wall import WallGeometry, WallMotion
 from dewing_sim.fluid.conformal.grid import Grid
-from dewing_sim.fluid.conformal.mapping import Map
 from dewing_sim.fluid.inflow import Inflow
 
 STILL = np.empty((0, 0))
