@@ -17,35 +17,16 @@ import numpy as np
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.fluid.base import Fluid, Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.field import FlowField
-from dewing_sim.fluid.finite_volume import NAME, adi, mapping, momentum, projection, transport
+from dewing_sim.fluid.finite_volume import NAME, mapping, projection, step
 from dewing_sim.fluid.finite_volume.field import flow_field
 from dewing_sim.fluid.finite_volume.grid import Grid, build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.potential import Potential
 from dewing_sim.fluid.finite_volume.presets import PRESETS
+from dewing_sim.fluid.finite_volume.step import FlowState
 from dewing_sim.fluid.inflow import Inflow
 
-UPWIND_SHARE = 0.5                  # in the far field only
-UPWIND_START, UPWIND_FULL = 1.0, 4.0    # chords from the plate
 FASTEST = 50.0                      # |u| in free-stream speeds beyond which a run has diverged
-
-
-@dataclass(frozen=True)
-class FlowState:
-    """Everything the next step depends on; faces as in `Grid`, speeds in U."""
-
-    u: np.ndarray                   # (nx + 1, ny)
-    v: np.ndarray                   # (nx, ny + 1)
-    fx: np.ndarray                  # Fx, flux through xi-faces
-    w: np.ndarray                   # Fy - g Y_t, flux through the moving eta-faces
-    p: np.ndarray                   # (nx, ny) pressure in rho U^2
-    u_before: np.ndarray            # one step earlier
-    v_before: np.ndarray
-    fx_before: np.ndarray
-    w_before: np.ndarray
-    height: np.ndarray              # wall heights at the column faces
-    velocity: np.ndarray            # wall velocities of the columns
-    circulation: float              # of wing and wake together, in U c
 
 
 @dataclass(frozen=True)
@@ -80,12 +61,8 @@ class FiniteVolume(Fluid):
         self.poisson = Poisson.of(grid)
         self.impedance = self.poisson.added_mass / self.theta
         self.potential = Potential.of(grid, alpha)
-        self._g = mapping.decay(grid)
-        self._upwind_x = _upwind(np.maximum(-grid.x, grid.x - 1.0))
-        self._upwind_y = _upwind(np.abs(grid.y))
-        self._upwind_xc = _upwind(np.maximum(-grid.xc, grid.xc - 1.0))
-        self._upwind_yc = _upwind(np.abs(grid.yc))
-        self._blocked = _blocked(grid)
+        self.solver = step.Solver.of(grid, self.nu, self.theta)
+        self._g = self.solver.g
 
     @classmethod
     def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'FiniteVolume':
@@ -130,7 +107,7 @@ class FiniteVolume(Fluid):
             raise BadInput('the finite-volume engine knows no gusts, heave or pitch: '
                            'numerics.engine: conformal does')
         metrics = mapping.metrics(self.grid, wall)
-        u, v = self.momentum(state, metrics, wall)
+        u, v = self._momentum(state, metrics, wall)
         fx, fy = projection.fluxes(self.grid, self._g, metrics, u, v)
         outflow = projection.divergence(fx, fy, self.grid.dx, self.grid.dy)
         even_hat, odd_hat, increment = self.poisson.forward(outflow / self.theta)
@@ -151,8 +128,7 @@ class FiniteVolume(Fluid):
             fields.even_hat, fields.odd_hat, fields.increment + self.impedance @ change,
             grid.dx[grid.plate] * change / self.theta)
         fx = fx.copy()
-        projection.correct(fx, fy, phi, grid.dxf, grid.dyf, self.theta,
-                           grid.leading, grid.trailing)
+        projection.correct(fx, fy, phi, grid.lattice, self.theta)
         u, v = projection.velocities(grid, self._g, fields.metrics, fx, fy)
         motion = mapping.grid_velocity(grid, replace(prediction.wall, velocity=velocity))
         self._guard(u)
@@ -170,7 +146,7 @@ class FiniteVolume(Fluid):
         shear = self.nu * (state.u[:, middle - 1] + state.u[:, middle]) / (
             0.5 * grid.dy[middle] * jacobian)
         normal = np.sum(jump * dx)
-        axial = (np.sum(shear * self._blocked * grid.dxf)
+        axial = (np.sum(shear * self.solver.blocked * grid.dxf)
                  - np.sum(jump * np.diff(state.height)))
         moment = -np.sum(jump * dx * (grid.xc[grid.plate] - 0.25))
         cos, sin = np.cos(self.alpha), np.sin(self.alpha)
@@ -192,7 +168,7 @@ class FiniteVolume(Fluid):
         still = np.zeros(len(self.columns) - 1)
         solution = self.poisson.forward(state.p)
         return {
-            'momentum': lambda: self.momentum(state, metrics, wall),
+            'momentum': lambda: self._momentum(state, metrics, wall),
             'pressure_forward': lambda: self.poisson.forward(state.p),
             'pressure_backward': lambda: self.poisson.backward(*solution, still),
         }
@@ -207,54 +183,11 @@ class FiniteVolume(Fluid):
         return Monitor.of(self.dt * rate / (1.0 + np.outer(m.height_c, self._g.dc)),
                           np.hypot(outside[:, None], grid.yc), self.slip(state))
 
-    def momentum(self, state: FlowState, m: mapping.Metrics, wall: Wall,
-                 ) -> tuple[np.ndarray, np.ndarray]:
+    def _momentum(self, state: FlowState, m: mapping.Metrics, wall: Wall,
+                  ) -> tuple[np.ndarray, np.ndarray]:
         """Return the velocities that satisfy momentum with the old pressure."""
-        fx = 2.0 * state.fx - state.fx_before
-        w = 2.0 * state.w - state.w_before
-        return self._solve_u(state, m, fx, w), self._solve_v(state, m, wall, fx, w)
-
-    def _solve_u(self, state, m, fx, w) -> np.ndarray:
-        grid, g = self.grid, self._g
-        west, east, south, north = np.empty((4, *state.u.shape))
-        change = np.zeros_like(state.u)         # the far field is given
-        drag = np.zeros((2, len(grid.x)))
-        transport.u_coefficients(
-            fx, w, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c, m.height_f, m.slope_f,
-            g.f, g.dc, g.df, self._upwind_x, self._upwind_yc, self._blocked, self.nu, self.theta,
-            west, east, south, north, drag)
-        momentum.u_explicit(
-            state.u, state.u_before, state.p, self.potential.outlet_pressure(state.circulation),
-            west, east, south, north, drag, grid.dxf, self.theta, change)
-        momentum.u_slope_terms(
-            state.u, state.u_before, state.p, grid.dx, grid.dy, grid.dxf, grid.dyf,
-            m.height_f, m.slope_c, m.slope_f, g.c, g.f, g.dc, self._blocked,
-            grid.leading, grid.trailing, self.nu, self.theta, change)
-        ratio = np.empty_like(change)
-        adi.sweep_x(change, west, east, ratio, len(grid.x))
-        adi.sweep_y(change, south, north, drag, len(grid.x))
-        return state.u + change
-
-    def _solve_v(self, state, m, wall, fx, w) -> np.ndarray:
-        grid, g = self.grid, self._g
-        west, east, south, north = np.empty((4, *state.v.shape))
-        change = np.zeros_like(state.v)
-        transport.v_coefficients(
-            fx, w, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c, m.height_f, m.slope_c,
-            g.c, g.dc, g.df, self._upwind_xc, self._upwind_y, grid.leading, grid.trailing,
-            self.nu, self.theta, west, east, south, north)
-        momentum.v_explicit(
-            state.v, state.v_before, state.p, west, east, south, north, grid.dyf,
-            m.height_c, g.df, self.theta, change)
-        momentum.v_slope_terms(
-            state.v, state.v_before, grid.dx, grid.dy, grid.dxf, grid.dyf, m.height_c,
-            m.slope_c, m.slope_f, g.c, g.f, g.df, grid.leading, grid.trailing,
-            self.nu, self.theta, change)
-        change[grid.plate, grid.middle] = wall.velocity - state.velocity
-        ratio = np.empty_like(change)
-        adi.sweep_x(change, west, east, ratio, len(grid.dx))
-        adi.sweep_y(change, south, north, np.zeros((2, len(grid.dx))), len(grid.dx))
-        return state.v + change
+        return step.velocities(state, m, wall.velocity, self.solver,
+                               self.potential.outlet_pressure(state.circulation))
 
     def _jump(self, p: np.ndarray) -> np.ndarray:
         """Return the pressure jump, below minus above, of the columns on the plate."""
@@ -266,17 +199,3 @@ class FiniteVolume(Fluid):
         if not fastest < FASTEST:
             raise Diverged(f'the flow reached {fastest:.3g} free-stream speeds: '
                            'lower the time step or refine the grid')
-
-
-def _upwind(distance: np.ndarray) -> np.ndarray:
-    """Return the share of upwinding at a distance (c) from the plate: zero near the membrane."""
-    ramp = (distance - UPWIND_START) / (UPWIND_FULL - UPWIND_START)
-    return UPWIND_SHARE * np.clip(ramp, 0.0, 1.0)
-
-
-def _blocked(grid: Grid) -> np.ndarray:
-    """Return the share (nx + 1,) of the control volume of u that lies on the plate."""
-    on_plate = np.zeros(len(grid.dx))
-    on_plate[grid.plate] = grid.dx[grid.plate]
-    padded = np.concatenate(([0.0], on_plate, [0.0]))
-    return 0.5 * (padded[1:] + padded[:-1]) / grid.dxf

@@ -2,17 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vorticity and stream function of a state, for pictures; evaluated on demand."""
 
-from typing import Any
-
 import numpy as np
 
 from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.field import FlowField, Patch
 from dewing_sim.fluid.finite_volume import mapping
 from dewing_sim.fluid.finite_volume.grid import Grid
+from dewing_sim.fluid.finite_volume.step import FlowState
 
 
-def flow_field(grid: Grid, state: Any, alpha: float) -> FlowField:
+def flow_field(grid: Grid, state: FlowState, alpha: float) -> FlowField:
     """Evaluate on the cell corners; upper and lower half are patches of their own."""
     m = mapping.metrics(grid, Wall(state.height, state.velocity))
     g = mapping.decay(grid)
@@ -30,7 +29,7 @@ def flow_field(grid: Grid, state: Any, alpha: float) -> FlowField:
                      alpha)
 
 
-def _corner_vorticity(grid: Grid, state: Any, m: mapping.Metrics, g: mapping.Decay,
+def _corner_vorticity(grid: Grid, state: FlowState, m: mapping.Metrics, g: mapping.Decay,
                       side: slice) -> np.ndarray:
     """Return v_x - u_y at the corners of one half; on the plate u_y is one-sided."""
     jacobian = 1.0 + np.outer(m.height_f, g.df)

@@ -9,10 +9,22 @@ constant eta.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from dewing_sim.fluid.finite_volume.presets import Spacing
+
+
+class Lattice(NamedTuple):
+    """The grid as compiled code knows it."""
+
+    dx: np.ndarray                  # (nx,) cell widths
+    dy: np.ndarray                  # (ny,) cell heights
+    dxf: np.ndarray                 # (nx + 1,) distances of centres across the xi-faces
+    dyf: np.ndarray                 # (ny + 1,) and across the eta-faces
+    leading: int                    # columns leading <= i < trailing touch the plate
+    trailing: int
 
 
 @dataclass(frozen=True)
@@ -77,6 +89,11 @@ class Grid:
     def dyf(self) -> np.ndarray:
         """Distance of the cell centres on both sides of each eta-face (ny + 1,)."""
         return _centre_distances(self.dy)
+
+    @cached_property
+    def lattice(self) -> Lattice:
+        """The grid for compiled code."""
+        return Lattice(self.dx, self.dy, self.dxf, self.dyf, self.leading, self.trailing)
 
     @cached_property
     def following_f(self) -> np.ndarray:

@@ -18,8 +18,10 @@ from dewing_sim.machine.kernels import kernel
 
 
 @kernel
-def u_explicit(u, before, p, p_outlet, west, east, south, north, wall, dxf, theta, r):
+def u_explicit(u, before, p, p_outlet, stencil, wall, solver, r):
     """Fill r (nx + 1, ny) for u without the slope terms; the boundary rows are left alone."""
+    west, east, south, north = stencil
+    dxf, theta = solver.lattice.dxf, solver.theta
     rows, ny = u.shape
     middle = ny // 2
     for i in range(1, rows):
@@ -41,8 +43,10 @@ def u_explicit(u, before, p, p_outlet, west, east, south, north, wall, dxf, thet
 
 
 @kernel
-def v_explicit(v, before, p, west, east, south, north, dyf, height_c, dgf, theta, r):
+def v_explicit(v, before, p, m, stencil, solver, r):
     """Fill r (nx, ny + 1) for v without the slope terms; the boundary rows are left alone."""
+    west, east, south, north = stencil
+    dyf, height_c, dgf, theta = solver.lattice.dyf, m.height_c, solver.g.df, solver.theta
     rows, nf = v.shape
     for i in range(1, rows):
         e = i if i == rows - 1 else i + 1
@@ -93,9 +97,11 @@ def _u_xi(u, before, i, dx, out):
 
 
 @kernel
-def u_slope_terms(u, before, p, dx, dy, dxf, dyf, height_f, slope_c, slope_f, gc, gf, dgc,
-                  blocked, leading, trailing, nu, theta, r):
+def u_slope_terms(u, before, p, m, solver, r):
     """Add the slope terms of u: -p_eta part of p_x and the cross diffusion."""
+    dx, dy, dxf, dyf, leading, trailing = solver.lattice
+    height_f, slope_c, slope_f, blocked = m.height_f, m.slope_c, m.slope_f, solver.blocked
+    gc, gf, dgc, nu, theta = solver.g.c, solver.g.f, solver.g.dc, solver.nu, solver.theta
     nx, ny = p.shape
     middle = ny // 2
     p_west, p_east, u_xi, cross = np.zeros(ny), np.zeros(ny), np.zeros(ny), np.zeros(ny)
@@ -133,9 +139,11 @@ def _v_eta(v, before, i, dy, out):
 
 
 @kernel
-def v_slope_terms(v, before, dx, dy, dxf, dyf, height_c, slope_c, slope_f, gc, gf, dgf,
-                  leading, trailing, nu, theta, r):
+def v_slope_terms(v, before, m, solver, r):
     """Add the cross diffusion of v."""
+    dx, dy, dxf, dyf, leading, trailing = solver.lattice
+    height_c, slope_c, slope_f = m.height_c, m.slope_c, m.slope_f
+    gc, gf, dgf, nu, theta = solver.g.c, solver.g.f, solver.g.df, solver.nu, solver.theta
     nx, nf = v.shape
     middle = nf // 2
     v_west, v_here, v_east = np.zeros(nf), np.zeros(nf), np.zeros(nf)

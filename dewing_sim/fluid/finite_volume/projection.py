@@ -18,8 +18,7 @@ def fluxes(grid: Grid, g: Decay, m: Metrics, u: np.ndarray, v: np.ndarray,
            ) -> tuple[np.ndarray, np.ndarray]:
     """Return Fx (nx + 1, ny) and Fy (nx, ny + 1) of the velocities."""
     fx, fy = np.empty_like(u), v.copy()
-    _to_fluxes(u, fx, fy, grid.dy, m.height_f, m.slope_c, g.f, g.dc,
-               grid.leading, grid.trailing)
+    _to_fluxes(u, fx, fy, grid.lattice, m, g)
     return fx, fy
 
 
@@ -27,8 +26,7 @@ def velocities(grid: Grid, g: Decay, m: Metrics, fx: np.ndarray, fy: np.ndarray,
                ) -> tuple[np.ndarray, np.ndarray]:
     """Return u and v of the fluxes: the inverse of `fluxes`."""
     u, v = np.empty_like(fx), fy.copy()
-    _to_velocities(fx, u, v, grid.dy, m.height_f, m.slope_c, g.f, g.dc,
-                   grid.leading, grid.trailing)
+    _to_velocities(fx, u, v, grid.lattice, m, g)
     return u, v
 
 
@@ -40,7 +38,9 @@ def _shear(u, i, j, dy, slope, g):
 
 
 @kernel
-def _to_fluxes(u, fx, fy, dy, height_f, slope_c, gf, dgc, leading, trailing):
+def _to_fluxes(u, fx, fy, lattice, m, g):
+    dy, leading, trailing = lattice.dy, lattice.leading, lattice.trailing
+    height_f, slope_c, gf, dgc = m.height_f, m.slope_c, g.f, g.dc
     nx, ny = len(slope_c), len(dy)
     for i in range(nx + 1):
         for j in range(ny):
@@ -55,7 +55,9 @@ def _to_fluxes(u, fx, fy, dy, height_f, slope_c, gf, dgc, leading, trailing):
 
 
 @kernel
-def _to_velocities(fx, u, v, dy, height_f, slope_c, gf, dgc, leading, trailing):
+def _to_velocities(fx, u, v, lattice, m, g):
+    dy, leading, trailing = lattice.dy, lattice.leading, lattice.trailing
+    height_f, slope_c, gf, dgc = m.height_f, m.slope_c, g.f, g.dc
     nx, ny = len(slope_c), len(dy)
     for i in range(nx + 1):
         for j in range(ny):
@@ -81,8 +83,9 @@ def divergence(fx, fy, dx, dy):
 
 
 @kernel
-def correct(fx, fy, phi, dxf, dyf, theta, leading, trailing):
+def correct(fx, fy, phi, lattice, theta):
     """Subtract theta grad phi from the fluxes in place, except through the plate and far field."""
+    _, _, dxf, dyf, leading, trailing = lattice
     nx, ny = phi.shape
     middle = ny // 2
     for i in range(1, nx):

@@ -22,13 +22,17 @@ def _coefficient(flux, conductance, beta, scale):
 
 
 @kernel
-def u_coefficients(fx, w, dx, dy, dxf, dyf, height_c, height_f, slope_f, gf, dgc, dgf,
-                   beta_x, beta_y, blocked, nu, theta, west, east, south, north, wall):
+def u_coefficients(fx, w, m, solver, stencil, wall):
     """Fill the coefficients of u (nx + 1, ny); ``wall`` (2, nx + 1) is the drag of the plate.
 
-    ``blocked`` (nx + 1,) is the share of each u control volume that lies on the plate: the
-    volumes centred on the edges see half the wall shear and half the free passage.
+    The volumes centred on its edges see half the wall shear and half the free passage.
     """
+    dx, dy, dxf, dyf, _, _ = solver.lattice
+    height_f, height_c, slope_f, gf = m.height_f, m.height_c, m.slope_f, solver.g.f
+    dgf, dgc, nu, theta, blocked = (solver.g.df, solver.g.dc, solver.nu, solver.theta,
+                                    solver.blocked)
+    beta_x, beta_y = solver.upwind.x, solver.upwind.yc
+    west, east, south, north = stencil
     nx, ny = len(dx), len(dy)
     middle = ny // 2
     for i in range(1, nx + 1):
@@ -72,9 +76,13 @@ def u_coefficients(fx, w, dx, dy, dxf, dyf, height_c, height_f, slope_f, gf, dgc
 
 
 @kernel
-def v_coefficients(fx, w, dx, dy, dxf, dyf, height_c, height_f, slope_c, gc, dgc, dgf,
-                   beta_x, beta_y, leading, trailing, nu, theta, west, east, south, north):
+def v_coefficients(fx, w, m, solver, stencil):
     """Fill the coefficients of v (nx, ny + 1); faces on the plate get none (v is given there)."""
+    dx, dy, dxf, dyf, leading, trailing = solver.lattice
+    height_f, height_c, slope_c, gc = m.height_f, m.height_c, m.slope_c, solver.g.c
+    dgf, dgc, nu, theta = solver.g.df, solver.g.dc, solver.nu, solver.theta
+    beta_x, beta_y = solver.upwind.xc, solver.upwind.y
+    west, east, south, north = stencil
     nx, ny = len(dx), len(dy)
     middle = ny // 2
     for i in range(1, nx):

@@ -47,7 +47,7 @@ def test_pressure_solution_satisfies_the_cut_laplacian():
     phi = poisson.backward(even, odd, jump, np.zeros(len(jump)))
     assert phi[grid.plate, grid.middle] - phi[grid.plate, grid.middle - 1] == pytest.approx(
         jump, abs=1.0e-10 * np.abs(phi).max())
-    projection.correct(fx, fy, phi, grid.dxf, grid.dyf, theta, grid.leading, grid.trailing)
+    projection.correct(fx, fy, phi, grid.lattice, theta)
     left = projection.divergence(fx, fy, grid.dx, grid.dy)
     assert np.abs(left).max() < 1.0e-10 * np.abs(theta * r).max()
 
