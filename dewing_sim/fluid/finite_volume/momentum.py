@@ -14,10 +14,10 @@ Terms with the slope s vanish away from the membrane and are added there only.
 
 import numpy as np
 
-from dewing_sim.machine.kernels import kernel
+from dewing_sim.machine.kernels import stage
 
 
-@kernel
+@stage
 def u_explicit(u, before, p, p_outlet, stencil, wall, solver, r):
     """Fill r (nx + 1, ny) for u without the slope terms; the boundary rows are left alone."""
     west, east, south, north = stencil
@@ -42,7 +42,7 @@ def u_explicit(u, before, p, p_outlet, stencil, wall, solver, r):
             r[i, middle - 1 + side] -= wall[side, i] * u[i, middle - 1 + side]
 
 
-@kernel
+@stage
 def v_explicit(v, before, p, m, stencil, solver, r):
     """Fill r (nx, ny + 1) for v without the slope terms; the boundary rows are left alone."""
     west, east, south, north = stencil
@@ -59,7 +59,7 @@ def v_explicit(v, before, p, m, stencil, solver, r):
                        / (dyf[j] * (1.0 + height_c[i] * dgf[j])))
 
 
-@kernel
+@stage
 def _p_eta(p, i, dyf, on_plate, out):
     """Fill dp/deta at the cell centres of column i, never differenced across the plate."""
     ny = len(out)
@@ -71,7 +71,7 @@ def _p_eta(p, i, dyf, on_plate, out):
         out[middle - 1] = (p[i, middle - 1] - p[i, middle - 2]) / dyf[middle - 1]
 
 
-@kernel
+@stage
 def _u_eta(u, before, i, dy, dyf, on_plate, out):
     """Fill du/deta of the extrapolated u at its own points, with u = 0 on the plate."""
     ny = len(out)
@@ -87,7 +87,7 @@ def _u_eta(u, before, i, dy, dyf, on_plate, out):
                             / (0.5 * dy[middle] + dyf[middle - 1]))
 
 
-@kernel
+@stage
 def _u_xi(u, before, i, dx, out):
     """Fill du/dxi of the extrapolated u at its own points."""
     distance = dx[i - 1] + dx[i]
@@ -96,7 +96,7 @@ def _u_xi(u, before, i, dx, out):
                   - 2.0 * u[i - 1, j] + before[i - 1, j]) / distance
 
 
-@kernel
+@stage
 def u_slope_terms(u, before, p, m, solver, r):
     """Add the slope terms of u: -p_eta part of p_x and the cross diffusion."""
     dx, dy, dxf, dyf, leading, trailing = solver.lattice
@@ -130,7 +130,7 @@ def u_slope_terms(u, before, p, m, solver, r):
                 1.0 + height_f[i] * dgc[j])
 
 
-@kernel
+@stage
 def _v_eta(v, before, i, dy, out):
     """Fill dv/deta of the extrapolated v at its own points."""
     for j in range(1, len(out) - 1):
@@ -138,7 +138,7 @@ def _v_eta(v, before, i, dy, out):
                   / (dy[j - 1] + dy[j]))
 
 
-@kernel
+@stage
 def v_slope_terms(v, before, m, solver, r):
     """Add the cross diffusion of v."""
     dx, dy, dxf, dyf, leading, trailing = solver.lattice

@@ -13,6 +13,7 @@ import numpy as np
 
 from dewing_sim.fluid.finite_volume import adi, mapping, momentum, transport
 from dewing_sim.fluid.finite_volume.grid import Grid, Lattice
+from dewing_sim.machine.kernels import kernel, stage
 
 UPWIND_SHARE = 0.5                  # in the far field only
 UPWIND_START, UPWIND_FULL = 1.0, 4.0    # chords from the plate
@@ -72,40 +73,54 @@ class Stencil(NamedTuple):
     north: np.ndarray
 
 
+class Fields(NamedTuple):
+    """What a step starts from; the fluxes are extrapolated to its end."""
+
+    u: np.ndarray
+    u_before: np.ndarray
+    v: np.ndarray
+    v_before: np.ndarray
+    p: np.ndarray
+    fx: np.ndarray
+    w: np.ndarray
+
+
 def velocities(state: FlowState, m: mapping.Metrics, wall_velocity: np.ndarray, solver: Solver,
                p_outlet: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return u and v that satisfy momentum with the old pressure."""
-    fx = 2.0 * state.fx - state.fx_before
-    w = 2.0 * state.w - state.w_before
-    return (_solve_u(state, m, fx, w, solver, p_outlet),
-            _solve_v(state, m, fx, w, solver, wall_velocity))
+    fields = Fields(state.u, state.u_before, state.v, state.v_before, state.p,
+                    2.0 * state.fx - state.fx_before, 2.0 * state.w - state.w_before)
+    return _velocities(fields, m, wall_velocity - state.velocity, solver, p_outlet)
 
 
-def _solve_u(state, m, fx, w, solver, p_outlet) -> np.ndarray:
-    stencil = Stencil(*np.empty((4, *state.u.shape)))
-    change = np.zeros_like(state.u)             # the far field is given
-    faces = len(change)
-    drag = np.zeros((2, faces))
-    transport.u_coefficients(fx, w, m, solver, stencil, drag)
-    momentum.u_explicit(state.u, state.u_before, state.p, p_outlet, stencil, drag, solver, change)
-    momentum.u_slope_terms(state.u, state.u_before, state.p, m, solver, change)
-    adi.sweep_x(change, stencil.west, stencil.east, np.empty_like(change), faces)
-    adi.sweep_y(change, stencil.south, stencil.north, drag, faces)
-    return state.u + change
+@kernel
+def _velocities(fields, m, wall_change, solver, p_outlet):
+    """Compute both in one function: to hand over the arrays takes a while, and is done once."""
+    u, v = np.zeros_like(fields.u), np.zeros_like(fields.v)     # the far field is given
+    drag = np.zeros((2, len(u)))
+    stencil = _stencil(u)
+    transport.u_coefficients(fields.fx, fields.w, m, solver, stencil, drag)
+    momentum.u_explicit(fields.u, fields.u_before, fields.p, p_outlet, stencil, drag, solver, u)
+    momentum.u_slope_terms(fields.u, fields.u_before, fields.p, m, solver, u)
+    adi.sweep_x(u, stencil.west, stencil.east, np.empty_like(u), len(u))
+    adi.sweep_y(u, stencil.south, stencil.north, drag, len(u))
+    stencil = _stencil(v)
+    transport.v_coefficients(fields.fx, fields.w, m, solver, stencil)
+    momentum.v_explicit(fields.v, fields.v_before, fields.p, m, stencil, solver, v)
+    momentum.v_slope_terms(fields.v, fields.v_before, m, solver, v)
+    leading, middle = solver.lattice.leading, len(solver.lattice.dy) // 2
+    for i in range(wall_change.size):
+        v[leading + i, middle] = wall_change[i]
+    adi.sweep_x(v, stencil.west, stencil.east, np.empty_like(v), len(v))
+    adi.sweep_y(v, stencil.south, stencil.north, np.zeros((2, len(v))), len(v))
+    return fields.u + u, fields.v + v
 
 
-def _solve_v(state, m, fx, w, solver, wall_velocity) -> np.ndarray:
-    stencil = Stencil(*np.empty((4, *state.v.shape)))
-    change = np.zeros_like(state.v)
-    columns, middle = len(change), len(solver.lattice.dy) // 2
-    transport.v_coefficients(fx, w, m, solver, stencil)
-    momentum.v_explicit(state.v, state.v_before, state.p, m, stencil, solver, change)
-    momentum.v_slope_terms(state.v, state.v_before, m, solver, change)
-    change[solver.lattice.leading:solver.lattice.trailing, middle] = (
-        wall_velocity - state.velocity)
-    adi.sweep_x(change, stencil.west, stencil.east, np.empty_like(change), columns)
-    adi.sweep_y(change, stencil.south, stencil.north, np.zeros((2, columns)), columns)
-    return state.v + change
+@stage
+def _stencil(like):
+    rows, columns = like.shape
+    four = np.empty((4, rows, columns))
+    return Stencil(four[0], four[1], four[2], four[3])
 
 
 def _upwind(distance: np.ndarray) -> np.ndarray:

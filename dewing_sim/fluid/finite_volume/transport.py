@@ -13,15 +13,15 @@ has zero row sum: a uniform stream is kept exactly on any moving grid, without a
 conservation law.  Fluxes (Fx, W) are those of the projection less the motion of the grid.
 """
 
-from dewing_sim.machine.kernels import kernel
+from dewing_sim.machine.kernels import stage
 
 
-@kernel
+@stage
 def _coefficient(flux, conductance, beta, scale):
     return scale * (conductance - 0.5 * flux + 0.5 * beta * abs(flux))
 
 
-@kernel
+@stage
 def u_coefficients(fx, w, m, solver, stencil, wall):
     """Fill the coefficients of u (nx + 1, ny); ``wall`` (2, nx + 1) is the drag of the plate.
 
@@ -75,7 +75,7 @@ def u_coefficients(fx, w, m, solver, stencil, wall):
         south[i, middle] *= 1.0 - blocked[i]
 
 
-@kernel
+@stage
 def v_coefficients(fx, w, m, solver, stencil):
     """Fill the coefficients of v (nx, ny + 1); faces on the plate get none (v is given there)."""
     dx, dy, dxf, dyf, leading, trailing = solver.lattice
