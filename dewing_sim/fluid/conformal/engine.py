@@ -151,11 +151,10 @@ class Conformal(Fluid):
         edges = self.edges.near(around.map)
         motion = frame.wall_motion(around, wall.velocity, state.velocity, state.velocity_before,
                                    self.dt)
+        past = step.Past(state.w, state.w_before, state.q, state.q_before, state.psi,
+                         state.psi_before, state.circulation)
         w, q, psi, pressure, circulation, slip = step.advance(
-            state.w, state.w_before, state.q, state.q_before, state.psi, state.psi_before,
-            state.circulation, frame.grid_stream(around.map), around.map.shape, around.map.scale,
-            around.shape_rate, around.scale_rate, frame.corner, frame.node, motion.u, motion.v,
-            motion.acceleration, motion.speed, edges.share, edges.influence, self.solver)
+            past, around, frame.stream(around.map), motion, edges, self.solver)
         self._require_hold(slip, state)
         fields = Predicted(state, around, w, q, psi, pressure, circulation,
                            frame.inflow.incidence, slip)

@@ -18,7 +18,6 @@ Camber moves the edges along xi, by 2 y/c for an arc.  What they need is made wh
 near a place and kept, so that a wing that bends to and fro does not pay again.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -135,8 +134,7 @@ def remove(influence, slip, h2, w, h2_w, exactly):
     return reach
 
 
-@dataclass(frozen=True)
-class Edges:
+class Edges(NamedTuple):
     """For one place of both edges: no slip and the share of second-order extrapolation."""
 
     influence: Influence

@@ -58,17 +58,17 @@ def added_mass(p, acceleration):
 
 
 @stage
-def wall_head(p, w, v, u, v_wall, u_wall, acceleration, b, plan):
-    """Return P (n,) on the membrane less its mean, for its normal ``acceleration`` A (n,).
+def wall_head(p, w, v, u, motion, b, plan):
+    """Return P (n,) on the membrane less its mean, for its motion, see `WallMotion`.
 
     ``v`` and ``u`` (n, rows) are the fluxes through the cell faces.
     """
-    _lamb_vector(w, v, u, v_wall, u_wall, b)
+    _lamb_vector(w, v, u, motion.v, motion.u, b)
     head = _weighted_modes(p.weight, w.shape[0], b, plan)
     vorticity = np.empty(w.shape[0])
     for i in range(w.shape[0]):
         vorticity[i] = w[i, 0]
-    head += p.inverse * line_modes(acceleration, b, plan)
+    head += p.inverse * line_modes(motion.acceleration, b, plan)
     head += p.viscous * line_modes(vorticity, b, plan)
     return line_values(head, b, plan)
 

@@ -58,45 +58,52 @@ class Solver(NamedTuple):
                    WallPressure.of(grid, nu), Fields.of(len(grid.xi), len(grid.eta)))
 
 
+class Past(NamedTuple):
+    """The last two instants, and the circulation of wing and wake."""
+
+    w: np.ndarray
+    w_before: np.ndarray
+    q: np.ndarray
+    q_before: np.ndarray
+    psi: np.ndarray
+    psi_before: np.ndarray
+    circulation: float
+
+
 @kernel
-def advance(w_now, w_before, q_now, q_before, psi_now, psi_before, circulation, turning, shape,
-            scale, shape_rate, scale_rate, sin_corner, sin_node, u_wall, v_wall, acceleration,
-            speed, share, influence, solver):
+def advance(past, around, stream, motion, edges, solver):
     """Return vorticity, h^2 w, psi', wall pressure, circulation and slip after a step.
 
-    ``turning`` (n, rows) is the stream function of turning axes at the corners, empty if they do
-    not turn; the membrane has the fluxes ``u_wall``, ``v_wall``, the normal ``acceleration`` with
-    the metric in it and the ``speed``, each (n,). The slip is the largest that was shed.
+    ``around`` is the `WallGeometry` at the end of the step and ``motion`` the `WallMotion`;
+    ``edges`` are the `noslip.Edges` there. The slip is the largest that was shed.
     """
-    f, plan = solver.fields, solver.exterior.plan
-    measure(shape, scale, shape_rate, scale_rate, solver.exterior, f.buffers, f.h2, f.grid_v,
-            f.grid_u)
-    w, outflow = _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, share,
-                            scale, sin_corner, solver)
-    circulation += solver.dt * outflow
-    required = modes.line_modes(-u_wall - 2.0 * scale * sin_node, f.buffers, plan)
-    q, psi, slip = _close(w, v_wall, required, circulation, influence, solver)
-    transport.fluxes(psi, sin_corner, scale, solver.grid, 0, len(psi), f.v, f.u)
-    p = pressure.wall_head(solver.wall_pressure, w, f.v, f.u, v_wall, u_wall, acceleration,
-                           f.buffers, plan)
+    f, plan, scale = solver.fields, solver.exterior.plan, around.map.edges[0]
+    measure(around.map.shape, scale, around.shape_rate, around.scale_rate, solver.exterior,
+            f.buffers, f.h2, f.grid_v, f.grid_u)
+    w, outflow = _transport(past, stream, edges.share, scale, solver)
+    circulation = past.circulation + solver.dt * outflow
+    required = modes.line_modes(-motion.u - 2.0 * scale * stream.node, f.buffers, plan)
+    q, psi, slip = _close(w, motion.v, required, circulation, edges.influence, solver)
+    transport.fluxes(psi, stream.corner, scale, solver.grid, 0, len(psi), f.v, f.u)
+    p = pressure.wall_head(solver.wall_pressure, w, f.v, f.u, motion, f.buffers, plan)
     for i in range(p.size):
-        p[i] -= 0.5 * speed[i]**2           # of the total head P
+        p[i] -= 0.5 * motion.speed[i]**2    # of the total head P
     return w, q, psi, p, circulation, slip
 
 
 @stage
-def _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, share, scale,
-               sin_corner, solver):
+def _transport(past, stream, share, scale, solver):
     """Return the vorticity (n, rows) before no slip, and what left through the outer boundary."""
     nu, dt, grid, f = solver.nu, solver.dt, solver.grid, solver.fields
-    n, rows = w_now.shape
+    n, rows = past.w.shape
     psi, w = f.buffers.re[:n * rows].reshape((n, rows)), np.empty((n, rows))
-    transport.extrapolate(w_now, w_before, share, w)
+    psi_now, psi_before, sin_corner = past.psi, past.psi_before, stream.corner
+    transport.extrapolate(past.w, past.w_before, share, w)
     for i in range(n):
         for j in range(rows):
             psi[i, j] = 2.0 * psi_now[i, j] - psi_before[i, j]
-    if turning.size:
-        psi -= turning
+    if stream.turning.size:
+        psi -= stream.turning
     outflow = 0.0
     # The first line needs the fluxes of the last; then a few lines pass through all that follows.
     transport.fluxes(psi, sin_corner, scale, grid, n - 1, n, f.v, f.u)
@@ -105,8 +112,8 @@ def _transport(w_now, w_before, q_now, q_before, psi_now, psi_before, turning, s
         stop = min(first + adi.LANES, n)
         transport.fluxes(psi, sin_corner, scale, grid, first, stop, f.v, f.u)
         transport.subtract_grid_flux(f.grid_v, f.grid_u, first, stop, f.v, f.u)
-        outflow += transport.residual(w, f.h2, q_now, q_before, f.v, f.u, grid, nu, dt, first,
-                                      stop, f.r)
+        outflow += transport.residual(w, f.h2, past.q, past.q_before, f.v, f.u, grid, nu, dt,
+                                      first, stop, f.r)
         adi.split_inertia(f.h2, f.v, f.u, grid, nu, dt, first, stop, f.inertia)
         adi.sweep_eta(f.r, f.inertia, f.v, grid, nu, first, stop)
     adi.sweep_xi(f.r, f.inertia, f.u, grid, nu, f.grid_v, f.grid_u)

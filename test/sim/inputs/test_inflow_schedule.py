@@ -129,7 +129,7 @@ def test_turning_moves_the_grid_as_a_rigid_body():
     _, g_v, g_u = metric_and_flux(
         fluid.solver.exterior, m.shape, m.scale, m.shape - pivot, m.scale)
     flux = 2.0j * (g_v + 1j * g_u)                      # V + i U of turning at the rate 2
-    stream, near = frame.grid_stream(m), (slice(None), slice(1, 30))
+    stream, near = frame.stream(m).turning, (slice(None), slice(1, 30))
     v = (stream - np.roll(stream, 1, axis=0))[near] / grid.step
     u = -np.diff(stream, axis=1)[:, :29] / grid.width[1:30]
     size = np.abs(flux[near]).max()

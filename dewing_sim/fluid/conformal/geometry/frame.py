@@ -11,6 +11,7 @@ no slip makes the centrifugal terms cancel, and Coriolis's leave -r (y y_t)_xi.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -21,6 +22,14 @@ from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.inflow import Inflow
 
 STILL = np.empty((0, 0))
+
+
+class Stream(NamedTuple):
+    """The stream far away, over 2 a sinh(eta), and that of turning axes."""
+
+    corner: np.ndarray              # (n,) half a step beyond the nodes
+    node: np.ndarray                # (n,)
+    turning: np.ndarray             # (n, rows) stream function at the corners, empty without
 
 
 @dataclass(frozen=True)
@@ -44,10 +53,11 @@ class Frame:
         """Angular velocity r, positive anticlockwise: nose down."""
         return -self.inflow.pitch_rate
 
-    def grid_stream(self, m: Map) -> np.ndarray:
-        """Return the stream function (n, rows) of turning at the corners, empty without."""
-        if not self.turn:
-            return STILL
+    def stream(self, m: Map) -> Stream:
+        """Return what advances the flow on a map."""
+        return Stream(self.corner, self.node, self._turning(m) if self.turn else STILL)
+
+    def _turning(self, m: Map) -> np.ndarray:
         corners = self.grid.xi + 0.5 * self.grid.step
         arm = m.places(self.grid.face, corners) - self.inflow.pivot
         return -0.5 * self.turn * np.abs(arm)**2
