@@ -29,12 +29,10 @@ def u_coefficients(fx, w, m, solver, stencil, wall):
     """
     dx, dy, dxf, dyf, _, _ = solver.lattice
     height_f, height_c, slope_f, gf = m.height_f, m.height_c, m.slope_f, solver.g.f
-    dgf, dgc, nu, theta, blocked = (solver.g.df, solver.g.dc, solver.nu, solver.theta,
-                                    solver.blocked)
+    dgf, dgc, nu, theta = solver.g.df, solver.g.dc, solver.nu, solver.theta
     beta_x, beta_y = solver.upwind.x, solver.upwind.yc
     west, east, south, north = stencil
     nx, ny = len(dx), len(dy)
-    middle = ny // 2
     for i in range(1, nx + 1):
         last = i == nx
         e = nx - 1 if last else i               # cell to the east
@@ -66,13 +64,20 @@ def u_coefficients(fx, w, m, solver, stencil, wall):
                 f_east = 0.5 * (fx[i, j] + fx[i + 1, j]) * dy[j]
                 d_east = nu * (1.0 + height_c[i] * dgc[j]) * dy[j] / dx[i]
                 east[i, j] = _coefficient(f_east, d_east, beta, scale)
-        drag = nu * (1.0 + slope_f[i] * slope_f[i]) * blocked[i] * theta
-        for side in range(2):
-            j = middle - 1 + side
-            wall[side, i] = drag / (
-                (1.0 + height_f[i] * dgc[j]) * dy[j] * 0.5 * dy[j])
-        north[i, middle - 1] *= 1.0 - blocked[i]
-        south[i, middle] *= 1.0 - blocked[i]
+        _plate(i, m, solver, stencil, wall)
+
+
+@stage
+def _plate(i, m, solver, stencil, wall):
+    """Write the drag of the plate on the face i, and close the passage through it."""
+    dy, dgc, blocked = solver.lattice.dy, solver.g.dc, solver.blocked[i]
+    middle = len(dy) // 2
+    drag = solver.nu * (1.0 + m.slope_f[i] * m.slope_f[i]) * blocked * solver.theta
+    for side in range(2):
+        j = middle - 1 + side
+        wall[side, i] = drag / ((1.0 + m.height_f[i] * dgc[j]) * dy[j] * 0.5 * dy[j])
+    stencil.north[i, middle - 1] *= 1.0 - blocked
+    stencil.south[i, middle] *= 1.0 - blocked
 
 
 @stage
