@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from dewing_sim.coupling import engine_choice, transfer
-from dewing_sim.coupling.iteration import Coupled, Coupling
+from dewing_sim.coupling.iteration import Coupling
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Monitor
@@ -80,9 +80,9 @@ class Wing:
             raise BadInput(f'v_squared = {inputs.v_squared!r} V^2 is out of range: zero or more')
         v_squared = self.amplifier.drive(state.v_squared, inputs.v_squared, self.dt)
         acting = self.sources.at((state.step + 1) * self.dt, inputs._replace(v_squared=v_squared))
-        return State.after(state.step + 1, v_squared, self.couple(state, acting, self._coupling))
+        return self.couple(state, acting, self._coupling)
 
-    def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> Coupled:
+    def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> State:
         """Advance flow and membrane by one step; failures carry ``state`` and its time."""
         try:
             return coupling.advance(state, inputs)

@@ -8,17 +8,17 @@ mass is inside the structural solution, so that the iteration converges at any m
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from dewing_sim.coupling import transfer
-from dewing_sim.coupling.load import Load
 from dewing_sim.coupling.membrane_iteration import iteration_of
+from dewing_sim.coupling.transfer import Load
 from dewing_sim.errors import NotConverged, RunFailed
 from dewing_sim.fluid.base import Fluid, Prediction, Wall
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine.kernels import checked_kernel
+from dewing_sim.state import State
 from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.motion import Motion
 from dewing_sim.structure.dynamics.step import Operator, Step
@@ -28,21 +28,6 @@ EXTRAPOLATION = tuple(map(np.array, (       # from one, two or three past values
     (1.0,), (2.0, -1.0), (3.0, -3.0, 1.0))))
 # Last correction of the membrane in chords, for a guess and in an iteration; the next is smaller.
 FORESEEN, ACCURACY = 1.0e-5, 1.0e-8
-
-
-@dataclass(frozen=True, eq=False)
-class Coupled:
-    """Flow and membrane at one instant, and how the step that led there went.
-
-    ``jump_history`` (0 to 3, columns) are the pressure jumps without added mass of the last
-    steps, newest first: what a wall without acceleration would have felt.
-    """
-
-    flow: Any
-    motion: Motion
-    jump_history: np.ndarray
-    iterations: int = 0
-    residual: float = 0.0               # last change of the shape, relative to its deflection
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +43,8 @@ class Coupling:
     tolerance: float
     iterations: int
 
-    def advance(self, now: Coupled, inputs: Inputs) -> Coupled:
-        """Return flow and membrane one step later under ``inputs``.
+    def advance(self, now: State, inputs: Inputs) -> State:
+        """Return the state one step later under ``inputs``.
 
         The first shape is that of the membrane under the pressure jump extrapolated from the
         jump history, without any by its own motion. Raises `NotConverged` after ``iterations``.
@@ -75,10 +60,10 @@ class Coupling:
             residual = shape_change(wall.height, before.height)
             if residual <= self.tolerance:
                 still = prediction.jump + fluid.impedance @ (before.velocity - coasting)
-                return Coupled(
-                    fluid.correct(prediction, wall.velocity), step.end(position),
-                    np.array([still, *now.jump_history[:len(EXTRAPOLATION) - 1]]),
-                    iteration, residual)
+                return State(
+                    now.step + 1, inputs.v_squared, fluid.correct(prediction, wall.velocity),
+                    step.end(position), iteration, residual,
+                    np.array([still, *now.jump_history[:len(EXTRAPOLATION) - 1]]))
         raise NotConverged(
             f'coupling: the shape still changes by {residual:.3g} of its deflection after '
             f'{self.iterations} iterations (tolerance {self.tolerance:.3g}); '
@@ -90,7 +75,7 @@ class Coupling:
         return Step(present, motion, v_squared, self.operator,
                     iteration_of(present, motion, v_squared, self.operator))
 
-    def _foreseen(self, step: Step, now: Coupled, coasting: np.ndarray, inputs: Inputs,
+    def _foreseen(self, step: Step, now: State, coasting: np.ndarray, inputs: Inputs,
                   ) -> np.ndarray:
         """Return the position under the extrapolated jump; only a guess, so it may fail."""
         position, history = now.motion.predict(self.operator.dt), now.jump_history

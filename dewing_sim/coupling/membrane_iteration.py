@@ -11,8 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from dewing_sim.coupling.load import Load
-from dewing_sim.coupling.transfer import add_load
+from dewing_sim.coupling.transfer import Load, add_load
 from dewing_sim.machine.kernels import kernel
 from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.band import Inverse, solve

@@ -7,6 +7,7 @@ cycle: its passive camber is the mean over the next `AVERAGE` convective times. 
 ends within its quasi-steady part has no cycles yet.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -57,7 +58,7 @@ def _march(wing: Wing, state: State, duration: float, progress=None):
     total = round(duration * wing.scales.time / wing.dt)
     samples = []
     for step in range(1, total + 1):
-        state = State.after(0, inputs.v_squared, wing.couple(state, inputs, free))
+        state = replace(wing.couple(state, inputs, free), step=0)
         if step % SAMPLE == 0 or step == total:
             samples.append(_sample(wing, state))
             if progress:

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 import yaml
 
-from dewing_sim.coupling.iteration import Coupled, Coupling
+from dewing_sim.coupling.iteration import Coupling
 from dewing_sim.fluid.base import Fluid, Wall
 from dewing_sim.fluid.plate import ADAPTATION_TIME, adapt_circulation, starting_circulation
 from dewing_sim.inputs.base import Inputs
@@ -43,7 +43,7 @@ class Wing(Protocol):
     def coupling(self, damping: float = 0.0) -> Coupling:
         """Return flow and membrane with a mass-proportional damping (U/c)."""
 
-    def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> Coupled:
+    def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> State:
         """Advance flow and membrane by one step."""
 
 
@@ -66,7 +66,7 @@ def march(wing: Wing, progress=None) -> State:
     state = start(wing)
     for step in range(total):
         coupling = overdamped if step * dt < QUASI_STEADY else free
-        state = State.after(0, inputs.v_squared, wing.couple(state, inputs, coupling))
+        state = replace(wing.couple(state, inputs, coupling), step=0)
         if step * dt < ADAPTATION_TIME:
             state = replace(state, flow=adapt_circulation(wing.fluid, state.flow, dt))
         if progress and (step + 1) % PROGRESS_STEPS == 0:

@@ -10,7 +10,6 @@ from dewing_sim import parameters
 from dewing_sim.fluid.plate import adapt_circulation
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.rest import trim
-from dewing_sim.state import State
 from dewing_sim.verification.closed_forms import TRIPLE_DECK, sail_deflection, sail_divergence
 from dewing_sim.verification.rigid_flow import step_cost
 from dewing_sim.verification.signals import limit
@@ -62,9 +61,9 @@ def static_deflection(wing: Wing, duration: float) -> float:
     coupling = wing.coupling(damping=2.0 * trim.first_frequency(wing))
     state = trim.start(wing)
     for _ in range(round(duration * wing.scales.time / wing.dt)):
-        coupled = wing.couple(state, Inputs(0.0), coupling)
-        state = replace(State.after(0, 0.0, coupled), flow=adapt_circulation(
-            wing.fluid, coupled.flow, wing.fluid.dt))
+        state = wing.couple(state, Inputs(0.0), coupling)
+        state = replace(state, step=0, flow=adapt_circulation(
+            wing.fluid, state.flow, wing.fluid.dt))
     return wing.observe(state).camber_max / wing.scales.length
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from dewing_sim import parameters
-from dewing_sim.coupling.load import Load
 from dewing_sim.coupling.membrane_iteration import MembraneIteration, iteration_of
+from dewing_sim.coupling.transfer import Load
 from dewing_sim.errors import Diverged, Slack
 from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.base import Inputs

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dewing_sim import parameters
-from dewing_sim.coupling.load import Load
+from dewing_sim.coupling.transfer import Load
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
