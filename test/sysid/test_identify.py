@@ -15,6 +15,7 @@ from dewing_sim.identity import Identity
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine.jobs import HERE, Workers
 from dewing_sim.model import Model
+from dewing_sim.wing import Wing
 from dewing_sysid import experiment, figures, plan
 from dewing_sysid.identify import concerns, identify, identify_plant, judge, nrmse_fit, report
 from dewing_sysid.settings import Settings
@@ -288,3 +289,13 @@ def test_an_unknown_output_is_refused():
         plan.make(settings(), PAPER, ['lift'])
     with pytest.raises(BadInput, match='mode_1 needs a membrane'):
         experiment.run(SyntheticPlant(), SyntheticPlant().rest(), ['mode_1'], np.zeros(2))
+
+
+@pytest.mark.parametrize('engine, grid', [('conformal', 'realtime'), ('finite_volume', 'fast')])
+def test_a_wing_moves_alike_in_processes_of_its_own(engine, grid):
+    wing = Wing(parameters.load('paper', changes={
+        'numerics.engine': engine, 'numerics.grid': grid, 'numerics.trim_time': 0.2}))
+    inputs = [np.full(4, v_squared) for v_squared in (0.0, 2.5e5)]
+    here, there = (experiment.run_all(wing, wing.rest(), ('camber_mean', 'cl'), inputs, workers)
+                   for workers in (HERE, Workers(2)))
+    assert np.array_equal(here, there)

@@ -51,6 +51,15 @@ class TwiddleFactors(NamedTuple):
         angles = -2.0 * np.pi * np.concatenate(twiddles)
         return cls(np.array(radices, dtype=np.int64), np.cos(angles), np.sin(angles))
 
+    def __reduce__(self) -> tuple:
+        """Let a copy in another process find the stages compiled there, too."""
+        return _restored, tuple(self)
+
+
+def _restored(*parts: np.ndarray) -> 'TwiddleFactors':
+    _compile()
+    return TwiddleFactors(*parts)
+
 
 def _factors(n: int) -> list[int]:
     radices, rest = [], n
