@@ -1,6 +1,6 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which files a V^2 walks through: where arguments or results differ when only V^2 differs."""
+"""Which files a V^2 walks through: where something else comes out when only V^2 differs."""
 
 import dataclasses
 import sys
@@ -18,10 +18,9 @@ def files_of(prepare: Callable[[], Callable[[float], None]], low: float, high: f
     """Return the files of dewing_sim on the walk of V^2, in the order of entry.
 
     ``prepare()`` returns a function that makes one step under a V^2, always from the same state.
-    What it enters with the same arguments and leaves with the same result under both values is
-    not on the walk.
-    Compiled functions show that they are called, not with what; those that other compiled
-    functions call do not show.
+    A file is on the walk if its functions return something else under the other value: what takes
+    a V^2 and leaves it without effect is not. Of compiled functions only what Python makes of
+    their results is seen.
     """
     for v_squared in (low, high):       # so that nothing is compiled or made first later on
         prepare()(v_squared)
@@ -29,18 +28,17 @@ def files_of(prepare: Callable[[], Callable[[float], None]], low: float, high: f
     return [file for file in second if first.get(file) != second[file]]
 
 
-def _trace(step: Callable[[float], None], v_squared: float) -> dict[str, list]:
-    """Return what went in and out of the functions of each file."""
-    found: dict[str, list] = {}
+def _trace(step: Callable[[float], None], v_squared: float) -> dict[str, set]:
+    """Return what came out of the functions of each file, files in the order of entry."""
+    found: dict[str, set] = {}
 
     def profile(frame, event, argument):
         code = frame.f_code
         if not code.co_filename.startswith(str(ROOT)) or event not in ('call', 'return'):
             return
-        file = str(Path(code.co_filename).relative_to(ROOT))
-        values = (argument if event == 'return' else
-                  tuple(frame.f_locals.get(name) for name in code.co_varnames[:code.co_argcount]))
-        found.setdefault(file, []).append((code.co_name, event, _digest(values)))
+        out = found.setdefault(str(Path(code.co_filename).relative_to(ROOT)), set())
+        if event == 'return':           # a set: how often it is called says nothing
+            out.add((code.co_name, _digest(argument)))
 
     sys.setprofile(profile)
     try:
