@@ -39,6 +39,7 @@ class Frame:
     inflow: Inflow
     corner: np.ndarray              # (n,) stream function over 2 a sinh(eta) half a step on
     node: np.ndarray                # (n,) the same at the nodes
+    is_steady: bool                 # whether axes and stream keep their velocities
     grid: Grid
 
     @classmethod
@@ -46,7 +47,8 @@ class Frame:
         """Return the frame of an inflow."""
         speed, angle = abs(inflow.stream), np.angle(inflow.stream)
         return cls(inflow, speed * np.sin(grid.xi + 0.5 * grid.step - angle),
-                   speed * np.sin(grid.xi - angle), grid)
+                   speed * np.sin(grid.xi - angle),
+                   inflow.stream_rate == 0.0 and not inflow.is_turning, grid)
 
     @property
     def turn(self) -> float:
@@ -69,9 +71,9 @@ class Frame:
         ``now`` and ``before`` are those of the last two steps.
         """
         within = around.wall_motion(velocity, now, before, dt)
-        inflow, turn = self.inflow, self.turn
-        if inflow.stream_rate == 0.0 and not inflow.is_turning:
+        if self.is_steady:
             return within
+        inflow, turn = self.inflow, self.turn
         arm = around.line.place - inflow.pivot
         flux = 1j * turn * arm * np.conj(around.line.slope)
         product = arm.imag * within.speed
