@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
-from dewing_sim import reduced
 from dewing_sim.files import check_free
-from dewing_sim.model import Model
+from dewing_sim.linear import reduced
+from dewing_sim.linear.model import Model
 
 WARM_UP = 200               # steps
 CONFIGURATIONS = {'one_process': (), 'two_processes': ('dewing_control.node',),

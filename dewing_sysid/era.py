@@ -12,7 +12,7 @@ import numpy as np
 from scipy import linalg
 
 from dewing_sim.errors import BadInput
-from dewing_sim.state_space import Matrices
+from dewing_sim.linear.state_space import Matrices
 from dewing_sysid.hankel import Hankel, leading
 
 

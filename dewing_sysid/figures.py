@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dewing_sim.files import new_file
-from dewing_sim.model import Model
+from dewing_sim.linear.model import Model
 from dewing_sysid.experiment import Record
 from dewing_sysid.identify import Identification
 from dewing_sysid.plan import EXPERIMENT, FRESH, SWEEP

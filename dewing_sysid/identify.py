@@ -10,10 +10,10 @@ import yaml
 
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.linear.model import Model
+from dewing_sim.linear.state_space import Matrices
 from dewing_sim.machine.jobs import HERE, Workers
-from dewing_sim.model import Model
 from dewing_sim.plant import Plant
-from dewing_sim.state_space import Matrices
 from dewing_sysid import era
 from dewing_sysid.experiment import Record, run_all, unit
 from dewing_sysid.plan import EXPERIMENT, FRESH, HALF, SWEEP, make, samples, time_scale

@@ -33,7 +33,7 @@ from dewing_sim.files import check_free
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Wall
 from dewing_sim.inputs.base import Inputs
-from dewing_sim.verification.rigid_flow import march, parabola
+from dewing_sim.verification.fluid.rigid_flow import march, parabola
 from dewing_sim.wing import Wing
 
 DURATION = 0.36             # c/U, half a period of the bending plate

@@ -65,7 +65,7 @@ def compare(arguments: argparse.Namespace, case: Case) -> None:
     voltages = arguments.voltages or VOLTAGES
     for voltage in voltages:
         options.within('--voltages', voltage, 0.0, case.actuation.voltage_limit, 'V')
-    from dewing_sim.verification import solid_wing
+    from dewing_sim.verification.wing import solid_wing
     rows = []
     with bar('comparing', quiet=arguments.quiet) as progress:
         for row in solid_wing.compare(case, voltages, progress):

@@ -58,9 +58,9 @@ def compute(plan: Any, folder: Path, where: Any, quiet: bool) -> tuple[dict, flo
     """Return the results of all runs and the seconds spent; keep each as it finishes."""
     import time
 
-    from dewing_cli.paper import workers
-    from dewing_cli.paper.record import file_name
-    from dewing_cli.paper.result import fingerprint, keep, recall
+    from dewing_cli.paper.report.record import file_name
+    from dewing_cli.paper.runs import workers
+    from dewing_cli.paper.runs.result import fingerprint, keep, recall
     marks = {name: fingerprint(name, plan.runs) for name in plan.runs}
     paths = {name: folder / RUNS / f'{file_name(name)}.npz' for name in plan.runs}
     kept = {name: recall(paths[name], marks[name]) for name in plan.runs}
@@ -84,8 +84,8 @@ def compute(plan: Any, folder: Path, where: Any, quiet: bool) -> tuple[dict, flo
 
 def write(plan: Any, found: dict, folder: Path, seconds: float) -> dict[str, Any]:
     """Write report, numbers and series; return the numbers."""
-    from dewing_cli.paper import html, record, sections
-    from dewing_cli.paper.section import Found
+    from dewing_cli.paper.report import html, record, sections
+    from dewing_cli.paper.report.section import Found
     made = sections.make(plan, Found(found))
     numbers = record.metrics(plan, made, found, seconds)
     record.write_series(folder / SERIES, made, overwrite=True)

@@ -100,7 +100,7 @@ def _check(arguments: argparse.Namespace) -> tuple[Any, Any]:
 
 def _model(arguments: argparse.Namespace, built: Any) -> Any:
     from dewing_control.model.identified import identify
-    from dewing_sim.model import Model
+    from dewing_sim.linear.model import Model
     if arguments.model:
         return Model.load(arguments.model)
     with bar('identifying', 'runs', arguments.quiet) as show:

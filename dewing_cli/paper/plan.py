@@ -5,12 +5,12 @@
 from dataclasses import dataclass
 from typing import Any
 
-from dewing_cli.paper.controlled import Controlled
-from dewing_cli.paper.designed import Designed
-from dewing_cli.paper.experiments import Experiments
-from dewing_cli.paper.film import Film
-from dewing_cli.paper.flight import Flight, case_of, convective_time
-from dewing_cli.paper.result import Run
+from dewing_cli.paper.runs.controlled import Controlled
+from dewing_cli.paper.runs.designed import Designed
+from dewing_cli.paper.runs.experiments import Experiments
+from dewing_cli.paper.runs.film import Film
+from dewing_cli.paper.runs.flight import Flight, case_of, convective_time
+from dewing_cli.paper.runs.result import Run
 from dewing_control.law.registry import LAWS, installed
 from dewing_control.model.identified import CHANGES
 from dewing_control.settings import ControllerSettings

@@ -22,9 +22,9 @@ from dewing_control.law.base import DisturbanceModel, Law, Settings, ramp
 from dewing_control.law.observer import Estimator, Observer
 from dewing_control.model.design import Design
 from dewing_sim.identity import Identity
+from dewing_sim.linear.state_space import Matrices
 from dewing_sim.parameters import choice, real
 from dewing_sim.plant import Measurement
-from dewing_sim.state_space import Matrices
 
 LEAST_CAMBER = 0.1          # of the passive one, below which w/a would be ill-conditioned
 

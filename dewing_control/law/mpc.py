@@ -25,9 +25,9 @@ from dewing_control.law.lqg import Lqg
 from dewing_control.model.design import Design
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.linear.state_space import Matrices
 from dewing_sim.parameters import count, real
 from dewing_sim.plant import Measurement
-from dewing_sim.state_space import Matrices
 
 TOLERANCE = 1.0e-6          # of the programme, in V_L^2
 MOST_ITERATIONS = 600       # which bound the time of a step; bounds hold whatever is left

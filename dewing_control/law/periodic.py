@@ -22,9 +22,9 @@ from dewing_control.law import pid
 from dewing_control.law.base import DisturbanceModel, Law, Settings
 from dewing_control.law.pid import Pid, PidGains
 from dewing_sim.identity import Identity
+from dewing_sim.linear.state_space import Matrices, frequency_response
 from dewing_sim.parameters import real
 from dewing_sim.plant import Measurement
-from dewing_sim.state_space import Matrices, frequency_response
 
 
 @dataclass(frozen=True)

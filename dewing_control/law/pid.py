@@ -22,9 +22,9 @@ import numpy as np
 
 from dewing_control.law.base import Law, Settings, ramp
 from dewing_sim.identity import Identity
+from dewing_sim.linear.state_space import Matrices
 from dewing_sim.parameters import real
 from dewing_sim.plant import Measurement
-from dewing_sim.state_space import Matrices
 
 
 @dataclass(frozen=True)

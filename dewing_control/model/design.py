@@ -21,7 +21,7 @@ import numpy as np
 from scipy import linalg
 
 from dewing_sim.errors import BadInput
-from dewing_sim.model import Model
+from dewing_sim.linear.model import Model
 
 if TYPE_CHECKING:
     from control import StateSpace

@@ -7,10 +7,10 @@ from typing import Callable
 
 from dewing_sim import parameters
 from dewing_sim.build import Built
+from dewing_sim.linear.model import Model
 from dewing_sim.machine import caches
 from dewing_sim.machine import fingerprint as machine
 from dewing_sim.machine.jobs import Workers
-from dewing_sim.model import Model
 from dewing_sim.rest.trim import fingerprint
 
 # Control needs the slow response of the wake as much as the modes: a window of 1.2 c/U, as in the

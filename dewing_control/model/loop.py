@@ -15,7 +15,7 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from dewing_control.model.design import Design
-from dewing_sim.state_space import Matrices, frequency_response
+from dewing_sim.linear.state_space import Matrices, frequency_response
 
 if TYPE_CHECKING:
     from control import StateSpace

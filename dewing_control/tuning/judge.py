@@ -21,7 +21,7 @@ from dewing_control.model.design import Design
 from dewing_control.model.loop import Loop, closed_matrix, sensitivity_at
 from dewing_control.settings import ControllerSettings
 from dewing_sim.identity import Identity
-from dewing_sim.state_space import Matrices
+from dewing_sim.linear.state_space import Matrices
 
 STEP_TIME = 0.05            # s
 FREQUENCY = 10.0            # Hz, of the disturbance

@@ -13,8 +13,8 @@ from dewing_control.trial.closed_loop import closed_loop, controller
 from dewing_control.tuning.judge import FREQUENCY, LOAD
 from dewing_sim.build import Built
 from dewing_sim.identity import Identity
-from dewing_sim.model import Model
-from dewing_sim.reduced import Reduced
+from dewing_sim.linear.model import Model
+from dewing_sim.linear.reduced import Reduced
 
 AVERAGED = 0.1              # s at the end of a run: one period of the disturbance
 

@@ -8,20 +8,18 @@ from typing import Any, Callable, Sequence
 
 from dewing_sim.errors import DewingError
 from dewing_sim.machine.jobs import Failed, Job, Workers, idle_cores, results
-from dewing_sim.verification import (
+from dewing_sim.verification.fluid import (
     added_mass,
     camber,
-    coupled,
-    divergence,
     impulsive,
     moving_camber,
     resolution,
     rigid_plate,
-    still_air,
     unsteady,
     vortex,
 )
 from dewing_sim.verification.study import Check, Run, Study
+from dewing_sim.verification.wing import coupled, divergence, still_air
 
 STUDIES = tuple(module.STUDY for module in (
     rigid_plate, resolution, vortex, impulsive, added_mass, unsteady, moving_camber, camber,

@@ -11,9 +11,10 @@ from scipy import io
 from synthetic_plant import SyntheticPlant
 
 from dewing_cli import main as cli
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.identity import Identity
-from dewing_sim.model import Model
+from dewing_sim.linear import reduced
+from dewing_sim.linear.model import Model
 from dewing_sysid import experiment, plan
 from dewing_sysid.settings import Settings
 

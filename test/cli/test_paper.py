@@ -22,11 +22,13 @@ from paper_runs import TINY, Sum
 
 from dewing_cli import main as cli
 from dewing_cli.commands import paper
-from dewing_cli.paper import html, plan, quantities, record, sections, workers
-from dewing_cli.paper.experiments import FIELDS
-from dewing_cli.paper.result import Result, fingerprint, keep, recall
-from dewing_cli.paper.section import Found, Row, Section
-from dewing_cli.paper.workers import Failure
+from dewing_cli.paper import plan
+from dewing_cli.paper.report import html, record, sections
+from dewing_cli.paper.report.section import Found, Row, Section
+from dewing_cli.paper.runs import quantities, workers
+from dewing_cli.paper.runs.experiments import FIELDS
+from dewing_cli.paper.runs.result import Result, fingerprint, keep, recall
+from dewing_cli.paper.runs.workers import Failure
 from dewing_sim.errors import RunFailed
 from dewing_sim.machine.jobs import Workers
 

@@ -13,8 +13,8 @@ from dewing_control.trial.closed_loop import closed_loop, controller
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity, loss_of_tension
-from dewing_sim.model import Model
-from dewing_sim.reduced import Reduced
+from dewing_sim.linear.model import Model
+from dewing_sim.linear.reduced import Reduced
 
 
 def identity_of(plant):

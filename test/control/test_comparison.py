@@ -15,11 +15,12 @@ from dewing_cli.main import main
 from dewing_control.figures.comparison import draw
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial import comparison, scenarios, trial
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import loss_of_tension
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.disturbance import wall_pressure
+from dewing_sim.linear import reduced
 from dewing_sim.parameters import Disturbance
 from dewing_sim.plant import Outputs
 from dewing_sim.wing import Wing

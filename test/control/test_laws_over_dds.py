@@ -15,7 +15,7 @@ from reduced_wing import first_mode
 from ros_processes import PATIENCE, graph, offline
 
 from dewing_control.node import ControllerNode
-from dewing_sim import reduced
+from dewing_sim.linear import reduced
 from dewing_sim.records import bag
 from dewing_sim.ros import harness
 from dewing_sim.ros.node import SimulatorNode

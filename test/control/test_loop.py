@@ -16,9 +16,10 @@ from dewing_control.model.design import Design, load
 from dewing_control.model.loop import Loop, closed_matrix, sensitivity_at
 from dewing_control.settings import ControllerSettings
 from dewing_control.tuning.judge import step_error
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
-from dewing_sim.state_space import Matrices, frequency_response
+from dewing_sim.linear import reduced
+from dewing_sim.linear.state_space import Matrices, frequency_response
 
 KINDS = ('pid', 'periodic', 'lqg')
 

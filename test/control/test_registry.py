@@ -21,8 +21,9 @@ from dewing_control.settings import ControllerSettings, value_of
 from dewing_control.trial.closed_loop import closed_loop, controller, same_memory
 from dewing_control.tuning.bounds import Bounds
 from dewing_control.tuning.tuning import tune
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
+from dewing_sim.linear import reduced
 from dewing_sim.plant import Measurement
 
 PROJECT = Path(__file__).parents[2]

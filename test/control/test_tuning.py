@@ -18,8 +18,9 @@ from dewing_control.tuning.bounds import Bounds
 from dewing_control.tuning.judge import LOAD, _saturation, judge, step_error
 from dewing_control.tuning.printed import pi_limit
 from dewing_control.tuning.tuning import tune
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.errors import RunFailed
+from dewing_sim.linear import reduced
 
 
 def settings(kind='pid', **changes):

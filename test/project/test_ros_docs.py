@@ -16,7 +16,8 @@ from reduced_wing import first_mode
 from ros_processes import PATIENCE
 
 from dewing_control.node import ControllerNode
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
+from dewing_sim.linear import reduced
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import schema
 from dewing_sim.ros import harness, messages

@@ -13,12 +13,13 @@ from sloped_plant import Plant, SlopedOutputs
 from std_msgs.msg import Float64
 
 from dewing_control.node import ControllerNode
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.build import build_foreign
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.linear import reduced
+from dewing_sim.linear.model import Model
 from dewing_sim.lockstep import LockStep
-from dewing_sim.model import Model
 from dewing_sim.plant import Measurement, Outputs, rollout
 from dewing_sim.quantities import output, schema
 from dewing_sim.records import bag

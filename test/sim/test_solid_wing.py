@@ -14,7 +14,7 @@ from dewing_sim.structure.dynamics.motion import Motion
 from dewing_sim.structure.dynamics.step import Operator, Step, advance
 from dewing_sim.structure.solid.pins import MIDDLE
 from dewing_sim.structure.solid.solid import Solid
-from dewing_sim.verification.solid_wing import compare
+from dewing_sim.verification.wing.solid_wing import compare
 from dewing_sim.wing import Wing
 
 COARSE = {'numerics.grid': 'fast', 'numerics.trim_time': 4.0, 'membrane.elements': 64}

@@ -11,8 +11,8 @@ from scipy import linalg
 from dewing_control.model.design import Design
 from dewing_sim import parameters
 from dewing_sim.identity import Identity
-from dewing_sim.model import Model
-from dewing_sim.reduced import Reduced
+from dewing_sim.linear.model import Model
+from dewing_sim.linear.reduced import Reduced
 
 CAMBER = 1.8e-5                         # m, passive mean camber
 SLACK = 1300.0**2                       # V_L^2

@@ -10,7 +10,7 @@ import numpy as np
 
 from dewing_control.law.base import Law
 from dewing_sim.parameters import count, real
-from dewing_sim.state_space import Matrices
+from dewing_sim.linear.state_space import Matrices
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from dewing_cli.paper.plan import QUICK
-from dewing_cli.paper.result import Result
+from dewing_cli.paper.runs.result import Result
 from dewing_sim.errors import RunFailed
 
 TINY = replace(

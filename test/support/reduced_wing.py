@@ -5,8 +5,8 @@
 import numpy as np
 from scipy import signal
 
-from dewing_sim.model import Model
-from dewing_sim.reduced import Reduced
+from dewing_sim.linear.model import Model
+from dewing_sim.linear.reduced import Reduced
 
 SLACK = 1300.0**2           # V_L^2 of the case `paper`
 CAMBER = 26.0e-6            # m, its passive mean camber

@@ -12,8 +12,9 @@ from reduced_wing import first_mode
 
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial.closed_loop import closed_loop, controller
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.identity import Identity
+from dewing_sim.linear import reduced
 from dewing_sim.plant import Measurement
 from dewing_sim.records import bag
 from dewing_sim.ros import harness

@@ -9,7 +9,7 @@ from scipy import linalg
 from synthetic_plant import matrices
 
 from dewing_sim.errors import BadInput
-from dewing_sim.state_space import Matrices
+from dewing_sim.linear.state_space import Matrices
 from dewing_sysid import era
 from dewing_sysid.hankel import Hankel, leading
 

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from synthetic_plant import DAMPING, FREQUENCIES, SyntheticPlant
 
-from dewing_sim import parameters, reduced
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.linear import reduced
+from dewing_sim.linear.model import Model
 from dewing_sim.machine.jobs import HERE, Workers
-from dewing_sim.model import Model
 from dewing_sim.wing import Wing
 from dewing_sysid import experiment, figures, plan
 from dewing_sysid.identify import concerns, identify, identify_plant, judge, nrmse_fit, report

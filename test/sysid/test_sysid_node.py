@@ -18,7 +18,7 @@ from trajectory_msgs.msg import JointTrajectory
 from dewing_sim import parameters
 from dewing_sim.build import build_reduced
 from dewing_sim.errors import BadInput
-from dewing_sim.model import Model
+from dewing_sim.linear.model import Model
 from dewing_sim.ros import harness, qos
 from dewing_sim.ros.node import SimulatorNode
 from dewing_sim.ros.recorder import RecorderNode

@@ -12,9 +12,9 @@ from dewing_sim.fluid.finite_volume.engine import FiniteVolume
 from dewing_sim.fluid.finite_volume.grid import build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.presets import PRESETS, Spacing
-from dewing_sim.verification.added_mass import AddedMassRun, sine
-from dewing_sim.verification.rigid_flow import parabola
-from dewing_sim.verification.vortex import VortexRun, free_engine, heaving, with_velocities
+from dewing_sim.verification.fluid.added_mass import AddedMassRun, sine
+from dewing_sim.verification.fluid.rigid_flow import parabola
+from dewing_sim.verification.fluid.vortex import VortexRun, free_engine, heaving, with_velocities
 
 COARSE = Spacing(0.02, 0.02, 0.08, 0.015, 0.2, 0.2, 0.4, 0.2, 0.4, extent=20.0)
 ALPHA = np.radians(4.0)

@@ -21,8 +21,8 @@ from dewing_sim.fluid.finite_volume.grid import build
 from dewing_sim.fluid.finite_volume.presets import Spacing
 from dewing_sim.fluid.plate import Plate
 from dewing_sim.rest import trim
-from dewing_sim.verification.rigid_flow import parabola
-from dewing_sim.verification.vortex import with_velocities
+from dewing_sim.verification.fluid.rigid_flow import parabola
+from dewing_sim.verification.fluid.vortex import with_velocities
 from dewing_sim.wing import Wing
 
 ALPHA = np.radians(4.0)

@@ -19,8 +19,8 @@ from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.inflow_schedule import InflowSchedule
 from dewing_sim.inputs.trajectory import SHAPES, Course
 from dewing_sim.rest import trim
-from dewing_sim.verification import unsteady
-from dewing_sim.verification.rigid_flow import parabola
+from dewing_sim.verification.fluid import unsteady
+from dewing_sim.verification.fluid.rigid_flow import parabola
 from dewing_sim.wing import Wing
 
 ALPHA = np.radians(4.0)

@@ -11,7 +11,7 @@ from ros_processes import PATIENCE
 from sensor_msgs.msg import JointState
 
 from dewing_control.node import ControllerNode
-from dewing_sim import reduced
+from dewing_sim.linear import reduced
 from dewing_sim.ros import harness, messages, qos
 from dewing_sim.ros.node import SimulatorNode
 

@@ -19,10 +19,10 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 from dewing_control.node import ControllerNode
-from dewing_sim import reduced
 from dewing_sim.errors import RunFailed
 from dewing_sim.identity import Identity
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.linear import reduced
 from dewing_sim.lockstep import Deadlines
 from dewing_sim.ros import harness, messages, qos
 from dewing_sim.ros.node import SimulatorNode

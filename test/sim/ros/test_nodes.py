@@ -18,7 +18,7 @@ from ros_processes import (
     wait_until,
 )
 
-from dewing_sim import reduced
+from dewing_sim.linear import reduced
 from dewing_sim.records import bag
 
 

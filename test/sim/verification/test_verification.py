@@ -19,7 +19,7 @@ from dewing_sim.verification.closed_forms import (
     sail_divergence,
     strip_added_mass,
 )
-from dewing_sim.verification.rigid_flow import PlateRun
+from dewing_sim.verification.fluid.rigid_flow import PlateRun
 from dewing_sim.verification.signals import block_mean, harmonics, limit, richardson, ringing
 from dewing_sim.verification.study import Check, Study
 

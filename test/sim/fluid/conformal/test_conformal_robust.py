@@ -13,7 +13,7 @@ from dewing_sim.fluid.plate import Plate
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.inflow_schedule import Course
 from dewing_sim.rest import trim
-from dewing_sim.verification.rigid_flow import parabola
+from dewing_sim.verification.fluid.rigid_flow import parabola
 from dewing_sim.wing import Wing
 
 
