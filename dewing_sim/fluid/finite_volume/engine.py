@@ -141,10 +141,10 @@ class FiniteVolume(Fluid):
         grid = self.grid
         jump = self._jump(state.p)
         dx, middle = grid.dx[grid.plate], grid.middle
-        jacobian = 1.0 + mapping.metrics(grid, Wall(state.height, state.velocity)).height_f * (
-            self._g.dc[middle])
-        shear = self.nu * (state.u[:, middle - 1] + state.u[:, middle]) / (
-            0.5 * grid.dy[middle] * jacobian)
+        height = mapping.metrics(grid, Wall(state.height, state.velocity)).height_f
+        below, above = (state.u[:, row] / (1.0 + height * self._g.dc[row])
+                        for row in (middle - 1, middle))
+        shear = self.nu * (below + above) / (0.5 * grid.dy[middle])
         normal = np.sum(jump * dx)
         axial = (np.sum(shear * self.solver.blocked * grid.dxf)
                  - np.sum(jump * np.diff(state.height)))

@@ -126,7 +126,7 @@ def _line(shape, edges, exterior, b):
         xi = exterior.xi[i]
         place[i] = complex(x[i] + 2.0 * edges[0] * exterior.cos[i], y[i])
         angle = np.arccos(min(1.0, max(-1.0, 2.0 * place[i].real - 1.0)))
-        theta[i] = angle if edges[1] < xi < edges[2] else 2.0 * np.pi - angle
+        theta[i] = angle if xi < edges[2] else 2.0 * np.pi - angle
         shift[i] = theta[i] - xi
     modes = np.empty(shape.size, dtype=np.complex128)
     for k in range(shape.size):
