@@ -7,6 +7,7 @@ Exit status: 0 done, 1 the run or a gate failed, 2 bad input, 130 interrupted.
 
 import argparse
 import importlib
+import io
 import os
 import pkgutil
 import sys
@@ -59,6 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run ``dewing`` with ``argv`` (default: the command line); return the exit status."""
     for name in THREADS:
         os.environ.setdefault(name, '1')
+    _write_every_character()
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
         try:
@@ -70,6 +72,13 @@ def main(argv: Sequence[str] | None = None) -> int:
             return _complain(error, FAILED)
         except KeyboardInterrupt:
             return _complain('interrupted', INTERRUPTED)
+
+
+def _write_every_character() -> None:
+    """Let both outputs write what their encoding lacks as an escape, not end in an exception."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors='backslashreplace')
 
 
 def _complain(error: object, status: int) -> int:

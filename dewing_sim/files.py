@@ -14,8 +14,11 @@ import yaml
 from dewing_sim.errors import BadInput
 
 
-def check_free(path: str | Path, overwrite: bool = False) -> Path:
+def check_free(path: str | Path, overwrite: bool = False,
+               way_out: str = '--force writes over it') -> Path:
     """Return ``path`` if a file may be written there; raise `BadInput` otherwise.
+
+    ``way_out`` is what who may not overwrite can do about it.
 
     Commands call it before a long computation, so that the result is not lost at its end.
     """
@@ -23,7 +26,7 @@ def check_free(path: str | Path, overwrite: bool = False) -> Path:
     if path.is_dir():
         raise BadInput(f'{path} is a folder, not a file')
     if path.exists() and not overwrite:
-        raise BadInput(f'{path} exists; --force writes over it')
+        raise BadInput(f'{path} exists; {way_out}')
     folder = path.parent
     while not folder.exists():
         folder = folder.parent
@@ -65,8 +68,10 @@ def read_npz(path: str | Path, what: str) -> Iterator[dict[str, np.ndarray]]:
         raise BadInput(f'{path}: not {what} ({_sentence(error)})') from None
     try:
         yield arrays
-    except (KeyError, IndexError, ValueError, TypeError, AttributeError,
-            yaml.YAMLError) as error:
+    except BadInput as error:
+        raise error if str(path) in str(error) else BadInput(f'{path}: {error}') from None
+    except (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError,
+            RecursionError, yaml.YAMLError) as error:
         raise BadInput(f'{path}: not {what} ({_sentence(error)})') from None
 
 

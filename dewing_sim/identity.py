@@ -10,11 +10,13 @@ from typing import Any
 
 import yaml
 
+from dewing_sim import yaml_text
 from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs, Plant, units_of
 from dewing_sim.quantities import Absent, schema
 from dewing_sim.scales import Scales
+from dewing_sim.schema import shown
 
 
 def version() -> str:
@@ -90,7 +92,7 @@ class Identity:
             if value is None and name.startswith('camber'):
                 continue
             if not (isinstance(value, float) and math.isfinite(value) and value > 0.0):
-                raise BadInput(f'identity: {name} = {value!r} is not a positive number')
+                raise BadInput(f'identity: {name} = {shown(value)} is not a positive number')
         return self
 
     def to_yaml(self) -> str:
@@ -104,6 +106,6 @@ class Identity:
     def from_yaml(cls, text: str) -> 'Identity':
         """Rebuild an identity; raise `BadInput` if ``text`` is not one."""
         try:
-            return cls(**yaml.safe_load(text)).checked()
-        except (TypeError, yaml.YAMLError) as error:
+            return cls(**yaml_text.read(text, 'not the identity of a plant')).checked()
+        except TypeError as error:
             raise BadInput(f'not the identity of a plant: {error}') from None

@@ -12,6 +12,7 @@ from typing import Any, Mapping
 
 import yaml
 
+from dewing_sim import yaml_text
 from dewing_sim.case import (
     Actuation,
     Case,
@@ -36,6 +37,7 @@ from dewing_sim.schema import (
     outside_modules,
     real,
     replace,
+    shown,
     text,
     to_mapping,
 )
@@ -52,11 +54,8 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     """Split ``section.key=value`` (the ``--set`` option) into name and YAML value."""
     name, equals, value = text.partition('=')
     if not equals or not name:
-        raise BadInput(f'{text!r} is not of the form section.key=value')
-    try:
-        return name.strip(), yaml.safe_load(value)
-    except yaml.YAMLError as error:
-        raise BadInput(f'{text!r} has no readable value ({_one_line(error)})') from None
+        raise BadInput(f'{shown(text)} is not of the form section.key=value')
+    return name.strip(), yaml_text.read(value, f'{shown(text)} has no readable value')
 
 
 def config_file(name: str, directory: str | None = None) -> Path:
@@ -102,10 +101,9 @@ def load(name: str, schema: type[Section] = Case, changes: Mapping[str, Any] | N
 
 def from_yaml(text: str, schema: type[Section] = Case, origin: str = 'YAML') -> Section:
     """Build a schema instance from ROS-format YAML; ``origin`` opens the messages of errors."""
+    tree = yaml_text.read(text, f'{origin}: not valid YAML', strict=True)
     try:
-        parameters = yaml.load(text, _StrictLoader)['/**']['ros__parameters']
-    except yaml.YAMLError as error:
-        raise BadInput(f'{origin}: not valid YAML ({_one_line(error)})') from None
+        parameters = tree['/**']['ros__parameters']
     except (TypeError, KeyError):
         raise BadInput(f'{origin}: parameters are expected below /**: ros__parameters:') from None
     try:
@@ -124,18 +122,6 @@ def _without_empty(tree: dict) -> dict:
     """Return nested mappings less the empty ones, which ROS cannot read."""
     return {key: _without_empty(value) if isinstance(value, dict) else value
             for key, value in tree.items() if value != {}}
-
-
-class _StrictLoader(yaml.SafeLoader):
-    """A YAML loader that refuses a repeated key instead of taking its last value."""
-
-    def construct_mapping(self, node, deep=False):
-        keys = [self.construct_object(key, deep) for key, _ in node.value]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise yaml.constructor.ConstructorError(
-                    None, None, f'{key} is given twice', node.start_mark)
-        return super().construct_mapping(node, deep)
 
 
 def _one_line(error: Exception) -> str:

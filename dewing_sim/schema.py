@@ -7,6 +7,7 @@ range, and otherwise raises `BadInput` naming field, value, unit and range.
 """
 
 import dataclasses
+import reprlib
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, TypeVar
@@ -109,6 +110,19 @@ def _number(field: dataclasses.Field) -> dataclasses.Field:
     return real('', field.metadata['meaning'], -HUGE, HUGE)
 
 
+def shown(value: Any) -> str:
+    """Return a value for the sentence of an error, abridged if it is large or deeply nested."""
+    try:
+        return _brief.repr(value)
+    except (ValueError, RecursionError):        # Python writes no whole number of 4300 digits
+        return f'<{type(value).__name__}>'
+
+
+_brief = reprlib.Repr()
+_brief.maxlevel, _brief.maxlist, _brief.maxdict = 2, 4, 4
+_brief.maxstring = _brief.maxother = 120
+
+
 def describe(field: dataclasses.Field) -> str:
     """Return meaning, unit and range of a field in one line, for descriptors and errors."""
     meta = field.metadata
@@ -132,7 +146,7 @@ def check(name: str, field: dataclasses.Field, value: Any, beside: Mapping = Map
         return _checked_numbers(name, field, value)
     if type(value) is not wanted:
         hint = _FLOAT_HINT if wanted is float else ''
-        raise BadInput(f'{name} = {value!r} is not a {_TYPE_NAMES[wanted]}{hint}: '
+        raise BadInput(f'{name} = {shown(value)} is not a {_TYPE_NAMES[wanted]}{hint}: '
                        f'{describe(field)}')
     if 'options' in field.metadata:
         word = value if field.metadata.get('open') else beside.get(field.metadata.get('of'))
@@ -142,13 +156,13 @@ def check(name: str, field: dataclasses.Field, value: Any, beside: Mapping = Map
     else:
         admissible = True
     if not admissible:
-        raise BadInput(f'{name} = {value!r} is out of range: {describe(field)}')
+        raise BadInput(f'{name} = {shown(value)} is out of range: {describe(field)}')
     return value
 
 
 def _checked_numbers(name: str, field: dataclasses.Field, value: Any) -> Numbers:
     if not isinstance(value, Mapping):
-        raise BadInput(f'{name} = {value!r} is not a section of numbers: {describe(field)}')
+        raise BadInput(f'{name} = {shown(value)} is not a section of numbers: {describe(field)}')
     for key, number in value.items():
         if not isinstance(key, str) or not key.isidentifier():
             raise BadInput(f'{name}.{key} is not a name: letters, digits and _')
@@ -169,7 +183,7 @@ def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section
     keys, wrong types and values out of range.
     """
     if not isinstance(mapping, Mapping):
-        raise BadInput(f"{name or 'parameters'}: expected keys and values, got {mapping!r}")
+        raise BadInput(f"{name or 'parameters'}: expected keys and values, got {shown(mapping)}")
     if hasattr(schema, 'chosen'):
         schema, mapping = schema.chosen(mapping)
     known = {field.name: field for field in dataclasses.fields(schema)}
@@ -193,7 +207,8 @@ def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section
 
 
 def _join(prefix: str, key: Any) -> str:
-    return f'{prefix}.{key}' if prefix else str(key)
+    word = key if isinstance(key, str) else shown(key)
+    return f'{prefix}.{word}' if prefix else word
 
 
 def _default_section(path: str, field: dataclasses.Field) -> dict:

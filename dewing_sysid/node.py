@@ -53,7 +53,7 @@ class SysidNode(Node):
         super().__init__('sysid', namespace='dewing', **harness.overrides(overrides), **options)
         self.settings, self.node_settings = settings_of(self)
         for path in filter(None, (self.node_settings.output, self.node_settings.records)):
-            check_free(path)
+            check_free(path, way_out='name another file')
         self.exit_status: int | None = None
         self.reason = 'idle'
         self.found: Identification | None = None

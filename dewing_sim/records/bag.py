@@ -39,7 +39,7 @@ class BagWriter:
     def __init__(self, path: str | Path):
         """Open the file; raise `BadInput` if it exists or cannot be written."""
         from mcap.writer import Writer
-        path = check_free(path)
+        path = check_free(path, way_out='name another file')
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open('xb')
         self._writer = Writer(self._file, chunk_size=CHUNK)

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from dewing_sim import yaml_text
 from dewing_sim.errors import BadInput
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine import caches
@@ -73,7 +74,8 @@ def _sample(wing: Wing, state: State) -> tuple[float, float]:
 
 def _read(path: Path) -> tuple[float, float]:
     try:
-        mean, largest = map(float, yaml.safe_load(path.read_text(encoding='utf-8')))
-    except (TypeError, ValueError, yaml.YAMLError):
+        text = path.read_text(encoding='utf-8')
+        mean, largest = map(float, yaml_text.read(text, f'{path}: not a passive camber'))
+    except (TypeError, ValueError):
         raise BadInput(f'{path}: not a passive camber') from None
     return mean, largest

@@ -16,6 +16,7 @@ from dewing_cli.commands import simulate
 from dewing_sim import parameters
 from dewing_sim.records.history import History
 
+PROJECT = Path(__file__).parents[2]
 QUICK = ['--grid', 'fast', '--set', 'numerics.trim_time=0.1', '--quiet']
 SIMULATE_KEYS = {
     'cl_mean', 'cl_rms', 'cd_mean', 'y_star', 'camber_max', 'camber_max_x_c', 'camber_mean',
@@ -250,3 +251,16 @@ def test_a_command_runs_on_one_thread_unless_told_otherwise():
         result = subprocess.run([sys.executable, '-c', code], env=bare | given,
                                 capture_output=True, text=True)
         assert result.stdout.strip() == threads, result.stderr
+
+
+@pytest.mark.parametrize('encoding', ['ascii', 'cp1252', 'utf-8'])
+def test_outputs_that_lack_a_character_write_an_escape(encoding):
+    """Also a name of a file that is in no encoding, as a byte 0xff is."""
+    for name in ('Flügel-翼.mcap', os.fsdecode(b'\xff.mcap')):
+        Path(name).write_bytes((PROJECT / 'test/reference/flight_0.1.mcap').read_bytes())
+        done = subprocess.run(
+            [sys.executable, '-m', 'dewing_cli', 'bag', 'info', name],
+            env=os.environ | {'PYTHONIOENCODING': encoding, 'PYTHONPATH': str(PROJECT)},
+            capture_output=True, check=False)
+        assert (done.returncode, done.stderr) == (0, b'')
+        assert b'.mcap: ' in done.stdout and b'plant ' in done.stdout

@@ -75,6 +75,11 @@ def test_a_bag_of_version_0_1_is_read():
     assert identity.units['camber_max'] == 'm'
 
 
+def test_who_has_no_option_to_overwrite_is_told_what_else_to_do(path):
+    with pytest.raises(BadInput, match='run.mcap exists; name another file'):
+        bag.BagWriter(path)
+
+
 def test_a_bag_of_a_plant_without_camber_says_what_it_measured(tmp_path):
     writer, types = bag.BagWriter(tmp_path / 'bare.mcap'), _types()
     header, time = types.types['std_msgs/msg/Header'], types.types['builtin_interfaces/msg/Time']
