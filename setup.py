@@ -17,7 +17,7 @@ ROS_WHEELS = ('; sys_platform == "linux" and platform_machine == "x86_64"'
 
 setup(
     name='dewing',
-    version='0.1.0',
+    version='0.2.0',
     description='Membrane wings of dielectric elastomer in viscous flow, and their control',
     long_description=(SOURCE / 'README.md').read_text(encoding='utf-8'),
     long_description_content_type='text/markdown',

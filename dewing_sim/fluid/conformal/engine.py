@@ -135,9 +135,11 @@ class Conformal(Fluid):
         m = self.geometry.mapping.follow(wall.height, self.geometry.mapping.flat())
         zero = np.zeros((len(self.grid.xi), len(self.grid.eta)))
         psi = zero + circulation / (2.0 * np.pi) * self.grid.face
-        return FlowState(zero, zero, psi, zero, zero, psi, m.shape, m.edges, m.shape, m.edges,
-                         zero[:, 0].copy(), wall.height, wall.velocity, wall.velocity, circulation,
-                         self.alpha, 0.0)
+        return FlowState(
+            w=zero, q=zero, psi=psi, w_before=zero, q_before=zero, psi_before=psi,
+            shape=m.shape, edges=m.edges, shape_before=m.shape, edges_before=m.edges,
+            pressure=zero[:, 0].copy(), height=wall.height, velocity=wall.velocity,
+            velocity_before=wall.velocity, circulation=circulation, incidence=self.alpha, slip=0.0)
 
     def with_circulation(self, state: FlowState, circulation: float) -> FlowState:
         """Return ``state`` with another circulation, by a starting vortex at infinity."""
@@ -156,8 +158,8 @@ class Conformal(Fluid):
         w, q, psi, pressure, circulation, slip = step.advance(
             past, around, frame.stream(around.map), motion, edges, self.solver)
         self._require_hold(slip, state)
-        fields = Predicted(state, around, w, q, psi, pressure, circulation,
-                           frame.inflow.incidence, slip)
+        fields = Predicted(before=state, around=around, w=w, q=q, psi=psi, pressure=pressure,
+                           circulation=circulation, incidence=frame.inflow.incidence, slip=slip)
         return Prediction(wall, around.jump(pressure), fields)
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
@@ -168,9 +170,12 @@ class Conformal(Fluid):
             motion = p.around.wall_motion(change, self._still, self._still, self.dt)
             pressure = pressure + added_mass(self.solver.wall_pressure, motion.acceleration)
         now = p.before
-        return FlowState(p.w, p.q, p.psi, now.w, now.q, now.psi, *p.around.map, now.shape,
-                         now.edges, pressure, wall.height, velocity, now.velocity,
-                         p.circulation, p.incidence, p.slip)
+        return FlowState(
+            w=p.w, q=p.q, psi=p.psi, w_before=now.w, q_before=now.q, psi_before=now.psi,
+            shape=p.around.map.shape, edges=p.around.map.edges, shape_before=now.shape,
+            edges_before=now.edges, pressure=pressure, height=wall.height, velocity=velocity,
+            velocity_before=now.velocity, circulation=p.circulation, incidence=p.incidence,
+            slip=p.slip)
 
     def loads(self, state: FlowState) -> Loads:
         """Integrate pressure and wall shear around the wing."""

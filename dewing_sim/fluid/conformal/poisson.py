@@ -54,8 +54,11 @@ class Poisson(NamedTuple):
         decay *= grid.width[:, None]
         pivot, ratio, decay, slope, beyond = (np.concatenate((real, real), axis=-1)
                                               for real in (pivot, ratio, decay, slope, beyond))
-        return cls(grid.width, 1.0 / grid.gap, pivot, ratio, decay, slope, corner, wall, shift,
-                   beyond, grid.gap[-1], integral, np.arange(rows - 2, 0, -1), np.arange(1, rows))
+        return cls(
+            width=grid.width, conductance=1.0 / grid.gap, pivot=pivot, ratio=ratio, decay=decay,
+            slope=slope, corner=corner, wall=wall, shift=shift, beyond=beyond,
+            last_gap=grid.gap[-1], integral=integral, inwards=np.arange(rows - 2, 0, -1),
+            outwards=np.arange(1, rows))
 
 
 def _factor(grid: Grid, k: np.ndarray, beyond: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -84,7 +84,7 @@ class FiniteVolume(Fluid):
         u, v = projection.velocities(self.grid, self._g, metrics, fx, fy)
         w = fy - np.outer(metrics.velocity, self._g.f)
         p = np.zeros((len(self.grid.dx), len(self.grid.dy)))
-        return FlowState(u, v, fx, w, p, u, v, fx, w, wall.height, wall.velocity, circulation)
+        return FlowState.resting(u, v, fx, w, p, wall, circulation)
 
     def with_circulation(self, state: FlowState, circulation: float) -> FlowState:
         """Return ``state`` with the far-field values of another total circulation (U c)."""
@@ -132,9 +132,10 @@ class FiniteVolume(Fluid):
         u, v = projection.velocities(grid, self._g, fields.metrics, fx, fy)
         motion = mapping.grid_velocity(grid, replace(prediction.wall, velocity=velocity))
         self._guard(u)
-        return FlowState(u, v, fx, fy - np.outer(motion, self._g.f), state.p + phi,
-                         state.u, state.v, state.fx, state.w,
-                         prediction.wall.height, velocity, state.circulation)
+        return FlowState(
+            u=u, v=v, fx=fx, w=fy - np.outer(motion, self._g.f), p=state.p + phi,
+            u_before=state.u, v_before=state.v, fx_before=state.fx, w_before=state.w,
+            height=prediction.wall.height, velocity=velocity, circulation=state.circulation)
 
     def loads(self, state: FlowState) -> Loads:
         """Integrate pressure and wall shear over both sides of the wing."""

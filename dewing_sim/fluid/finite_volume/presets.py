@@ -32,10 +32,12 @@ class Preset(GridPreset):
 
 
 PRESETS = {
-    'fast': Preset(Spacing(0.006, 0.015, 0.05, 0.0025, 0.15, 0.12, 0.35, 0.14, 0.40, 0.4),
+    'fast': Preset(Spacing(0.006, 0.015, 0.05, 0.0025, growth_plate=0.15, growth_wake=0.12,
+                           growth_upstream=0.35, growth_near=0.14, growth_far=0.40, near=0.4),
                    milliseconds=0.4),
     'standard': Preset(Spacing(0.003, 0.006, 0.025, 0.001, growth_near=0.09, near=0.4),
                        milliseconds=1.0),
-    'fine': Preset(Spacing(0.0015, 0.003, 0.015, 0.0007, 0.07, 0.04, 0.12, 0.06, 0.15),
+    'fine': Preset(Spacing(0.0015, 0.003, 0.015, 0.0007, growth_plate=0.07, growth_wake=0.04,
+                           growth_upstream=0.12, growth_near=0.06, growth_far=0.15),
                    milliseconds=4.0),
 }

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dewing_sim.fluid.base import Wall
 from dewing_sim.fluid.finite_volume import adi, mapping, momentum, transport
 from dewing_sim.fluid.finite_volume.grid import Grid, Lattice
 from dewing_sim.machine.kernels import kernel, stage
@@ -35,6 +36,13 @@ class FlowState:
     height: np.ndarray              # wall heights at the column faces
     velocity: np.ndarray            # wall velocities of the columns
     circulation: float              # of wing and wake together, in U c
+
+    @classmethod
+    def resting(cls, u: np.ndarray, v: np.ndarray, fx: np.ndarray, w: np.ndarray, p: np.ndarray,
+                wall: Wall, circulation: float) -> 'FlowState':
+        """Return a flow that has been the same one step earlier."""
+        return cls(u=u, v=v, fx=fx, w=w, p=p, u_before=u, v_before=v, fx_before=fx, w_before=w,
+                   height=wall.height, velocity=wall.velocity, circulation=circulation)
 
 
 class Upwind(NamedTuple):

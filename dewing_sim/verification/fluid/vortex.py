@@ -41,7 +41,7 @@ def with_velocities(engine: FiniteVolume, wall: Wall, u: np.ndarray, v: np.ndarr
     fx, fy = projection.fluxes(engine.grid, g, metrics, u, v)
     w = fy - np.outer(metrics.velocity, g.f)
     p = np.zeros((len(engine.grid.dx), len(engine.grid.dy)))
-    return FlowState(u, v, fx, w, p, u, v, fx, w, wall.height, wall.velocity, 0.0)
+    return FlowState.resting(u, v, fx, w, p, wall, 0.0)
 
 
 def taylor_vortex(x, y, time: float) -> tuple[np.ndarray, np.ndarray]:

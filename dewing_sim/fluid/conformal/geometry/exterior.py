@@ -33,9 +33,10 @@ class Exterior(NamedTuple):
     def of(cls, grid: Grid) -> 'Exterior':
         """Return the tables of ``grid``."""
         k = grid.wavenumbers[:-1]
-        return cls(np.exp(-np.outer(k, grid.eta)), np.ones((len(k), 1)),
-                   np.exp(-1j * k * grid.xi[0]), np.sinh(grid.eta), np.cosh(grid.eta),
-                   np.cos(grid.xi), np.sin(grid.xi), grid.xi, Plan.of(len(grid.xi)))
+        return cls(
+            decay=np.exp(-np.outer(k, grid.eta)), on_wall=np.ones((len(k), 1)),
+            start=np.exp(-1j * k * grid.xi[0]), sinh=np.sinh(grid.eta), cosh=np.cosh(grid.eta),
+            cos=np.cos(grid.xi), sin=np.sin(grid.xi), xi=grid.xi, plan=Plan.of(len(grid.xi)))
 
     @property
     def shape(self) -> tuple[int, int]:
