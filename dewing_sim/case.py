@@ -7,9 +7,11 @@ files.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from dewing_sim.fluid import engines
+from dewing_sim.relations import Bound
 from dewing_sim.schema import Numbers, choice, count, numbers, real
 
 
@@ -85,6 +87,8 @@ class Actuation:
         'V/s', 'fastest change of the amplifier, 0: no limit', 0.0, 1.0e9)
     amplifier_lag: float = real('s', 'first-order lag of the amplifier, 0: none', 0.0, 10.0)
 
+    relations = (Bound('voltage', 'voltage_limit'),)
+
 
 @dataclass(frozen=True)
 class Disturbance:
@@ -127,6 +131,20 @@ class RigidMotion:
         return math.radians(self.pitch_deg)
 
 
+def _lasts(name: str) -> tuple[Bound, Bound]:
+    """Return the bounds of a course in time, which is sampled once a step.
+
+    A course of less than two steps falls between them; a sine of just two meets its zeros only.
+    """
+    def at_least(steps: int, holds: Callable[[str], bool], if_: str) -> Bound:
+        return Bound(f'{name}.duration', 'numerics.time_step', f'{steps} {{}}',
+                     lambda dt: steps * dt, lambda case: holds(getattr(case, name).shape),
+                     f'{name}.shape is {if_}', least=True)
+
+    return (at_least(2, lambda shape: shape != 'none', 'not none'),
+            at_least(4, lambda shape: shape == 'sine', 'sine'))
+
+
 @dataclass(frozen=True)
 class Case:
     """A complete description of one wing in one flow."""
@@ -138,3 +156,10 @@ class Case:
     disturbance: Disturbance
     gust: Gust
     rigid_motion: RigidMotion
+
+    # A disturbance beyond the Nyquist frequency of the steps would act as a slower one.
+    relations = (
+        Bound('disturbance.frequency', 'numerics.time_step', '1/(2 {})',
+              lambda dt: 0.5 / dt, lambda case: case.disturbance.pressure != 0.0,
+              'disturbance.pressure is not 0'),
+        *_lasts('gust'), *_lasts('rigid_motion'))

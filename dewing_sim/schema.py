@@ -3,7 +3,8 @@
 """Dataclasses as schemas: a field declares unit, meaning and range, and every value is checked.
 
 `from_mapping` accepts exactly the fields of a dataclass, each with the right type and inside its
-range, and otherwise raises `BadInput` naming field, value, unit and range.
+range, and otherwise raises `BadInput` naming field, value, unit and range. What one field demands
+of another is declared beside them, see `relations`.
 """
 
 import dataclasses
@@ -12,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+from dewing_sim import relations
 from dewing_sim.errors import BadInput
 from dewing_sim.plugins import is_plugin
 
@@ -86,10 +88,11 @@ def _field(kind: type, unit: str, meaning: str, **more: Any) -> Any:
 def fields(schema: type, prefix: str = '') -> Iterator[tuple[str, dataclasses.Field]]:
     """Yield (dotted name, field) of every leaf of a schema, depth first."""
     for field in dataclasses.fields(schema):
+        inner = [(prefix + field.name, field)]
         if dataclasses.is_dataclass(field.type):
-            yield from fields(field.type, f'{prefix}{field.name}.')
-        else:
-            yield prefix + field.name, field
+            inner = fields(field.type, f'{prefix}{field.name}.')
+        for name, leaf in inner:
+            yield name, relations.noted(leaf, name, schema, prefix)
 
 
 def leaves(section: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:
@@ -125,7 +128,10 @@ _brief.maxstring = _brief.maxother = 120
 
 def describe(field: dataclasses.Field) -> str:
     """Return meaning, unit and range of a field in one line, for descriptors and errors."""
-    meta = field.metadata
+    return '; '.join([_described(field.metadata), *field.metadata.get('relations', ())])
+
+
+def _described(meta: Mapping[str, Any]) -> str:
     if 'options' in meta:
         outside = ' or package.module:Name' if meta.get('open') else ''
         return f"{meta['meaning']}; one of {', '.join(meta['options'])}{outside}"
@@ -180,7 +186,7 @@ def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section
 
     A schema whose fields depend on a value has a class method ``chosen(mapping)``, which returns
     the schema to take and what of ``mapping`` is for it. Raises `BadInput` for unknown or missing
-    keys, wrong types and values out of range.
+    keys, wrong types, values out of range and values that break a relation.
     """
     if not isinstance(mapping, Mapping):
         raise BadInput(f"{name or 'parameters'}: expected keys and values, got {shown(mapping)}")
@@ -203,7 +209,9 @@ def from_mapping(schema: type[Section], mapping: Any, name: str = '') -> Section
             values[key] = field.metadata['default']
         else:
             raise BadInput(f'{path} is missing{_missing_hint(field)}')
-    return schema(**values)
+    made = schema(**values)
+    relations.require(made, name, fields(schema))
+    return made
 
 
 def _join(prefix: str, key: Any) -> str:

@@ -38,7 +38,8 @@ class Wing:
     pressure jump as a fraction of q, positive if it presses the camber up; ``gust(time)`` the
     gust's speeds (along the free stream, upwards) in m/s; ``motion(time)`` the heave in m and the
     pitch in rad, about the pivot of the case, both zero at first. Gust and motion have to be
-    smooth, since their rates act too: interpolate a table by a spline.
+    smooth, since their rates act too: interpolate a table by a spline. All are sampled at the end
+    of every time step dt, so what is faster than 1/(2 dt) acts as something slower.
     """
 
     def __init__(self, case: Case, *, wall_pressure: Pressure | None = None,

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import signal as dsp
 
 from dewing_sim.errors import BadInput
+from dewing_sim.numerals import apart, not_above
 
 REGISTER_BITS = 11                      # the binary sequence repeats after 2^11 - 1 bits
 
@@ -52,8 +53,8 @@ def chirp(samples: int, dt: float, low: float, high: float, sweeping: float = 0.
     decays, so that the ratio of output to input spectrum estimates the frequency response.
     """
     if not 0.0 < low < high < 0.5 / dt:
-        raise BadInput(f'a sweep from {low:g} to {high:g} Hz does not fit between 0 and the '
-                       f'Nyquist frequency {0.5 / dt:g} Hz')
+        raise BadInput(f'a sweep from {low:g} to {apart(high, 0.5 / dt)[0]} Hz does not fit '
+                       f'between 0 and the Nyquist frequency {not_above(0.5 / dt)} Hz')
     time = dt * np.arange(math.ceil(sweeping * samples))
     u = np.zeros(samples)
     u[:len(time)] = dsp.chirp(time, low, time[-1], high, method='logarithmic', phi=-90.0)

@@ -3,7 +3,7 @@
 """Which runs an identification needs: V^2 of each, all from the rest state of one case."""
 
 from dataclasses import dataclass
-from typing import Mapping, Sequence
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def make(settings: Settings, identity: Identity, names: Sequence[str] | None = N
     shapes = {
         EXPERIMENT: (form, chosen.amplitude**2),
         HALF: (form, 0.5 * chosen.amplitude**2),
-        FRESH: (excitation.prbs(fresh_length, fresh.hold, fresh.seed), fresh.amplitude**2),
+        FRESH: (_levels('fresh', 'prbs', fresh, fresh_length), fresh.amplitude**2),
         SWEEP: (_sweep(settings, fresh_length, dt), fresh.amplitude**2)}
     inputs = {name: excitation.about(shape, amplitude, rest)
               for name, (shape, amplitude) in shapes.items()}
@@ -93,11 +93,26 @@ def named(outputs: str) -> tuple[str, ...]:
 
 def _shape(settings: Settings, length: int, dt: float) -> np.ndarray:
     chosen = settings.experiment
-    return {'pulse': lambda: excitation.pulse(length, chosen.hold),
-            'doublet': lambda: excitation.doublet(length, chosen.hold),
-            'step': lambda: excitation.step(length),
-            'prbs': lambda: excitation.prbs(length, chosen.hold, chosen.seed),
-            'chirp': lambda: _sweep(settings, length, dt)}[chosen.kind]()
+    if chosen.kind == 'step':
+        return excitation.step(length)
+    if chosen.kind == 'chirp':
+        return _sweep(settings, length, dt)
+    return _levels('experiment', chosen.kind, chosen, length)
+
+
+LEVELS = {'pulse': 1, 'doublet': 2, 'prbs': 1}      # that a record has to hold, and a sample more
+
+
+def _levels(section: str, kind: str, chosen: Any, length: int) -> np.ndarray:
+    """Return a signal of held levels; raise `BadInput` if the record ends before they change."""
+    most = (length - 1) // LEVELS[kind]
+    if chosen.hold > most:
+        raise BadInput(f'{section}.hold = {chosen.hold} samples is out of range: a {kind} lets it '
+                       f'be at most {most} with {section}.record = {chosen.record:g} c/U, which '
+                       f'is {length} samples')
+    if kind == 'prbs':
+        return excitation.prbs(length, chosen.hold, chosen.seed)
+    return getattr(excitation, kind)(length, chosen.hold)
 
 
 def _sweep(settings: Settings, length: int, dt: float) -> np.ndarray:

@@ -5,6 +5,7 @@
 from dataclasses import dataclass
 
 from dewing_sim.parameters import choice, count, real, text
+from dewing_sim.relations import Bound
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,8 @@ class Experiment:
     sweep_low: float = real('Hz', 'start of the chirp', 1.0e-3, 1.0e6)
     sweep_high: float = real('Hz', 'end of the chirp', 1.0e-3, 1.0e6)
     seed: int = count('start of the binary sequence', 1, 2047)
+
+    relations = (Bound('sweep_low', 'sweep_high'),)
 
 
 @dataclass(frozen=True)

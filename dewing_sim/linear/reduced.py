@@ -20,6 +20,7 @@ from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.linear.model import Model
+from dewing_sim.numerals import apart, not_above
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import extended, schema
 
@@ -65,6 +66,8 @@ class Reduced:
                 self.disturbance.shape == rows and np.all(np.isfinite(self.disturbance))):
             raise BadInput(f'reduced model: disturbance must be finite and of shape {rows}, '
                            f'got shape {self.disturbance.shape}')
+        if self.disturbance is not None:
+            _require_sampled(self.disturbance_frequency, self.dt)
 
     @property
     def dt(self) -> float:
@@ -160,6 +163,15 @@ def load(path: str | Path) -> Reduced:
         return Reduced(model, **own)
     except BadInput as error:
         raise BadInput(f'{path}: {error}') from None
+
+
+def _require_sampled(frequency: float, dt: float) -> None:
+    """Raise `BadInput` for a frequency that steps of ``dt`` show as another one."""
+    highest = 0.5 / dt
+    if not 0.0 <= frequency <= highest:
+        raise BadInput(f'reduced model: disturbance_frequency = {apart(frequency, highest)[0]} Hz '
+                       f'is out of range: from 0 to {not_above(highest)} Hz, 1/(2 dt), with dt = '
+                       f'{dt:.10g} s')
 
 
 _OWN = ('rest_v_squared', 'disturbance', 'disturbance_frequency')

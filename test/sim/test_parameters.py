@@ -9,8 +9,8 @@ import pickle
 from dataclasses import dataclass
 
 import pytest
+from drawn_cases import mappings
 from hypothesis import given
-from hypothesis import strategies as st
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
@@ -128,23 +128,7 @@ def test_an_unknown_option_is_refused_with_the_known_ones():
         parameters.from_mapping(Case, changed('numerics.grid', 'coarse'))
 
 
-@st.composite
-def cases(draw):
-    """Draw the mapping of an admissible case."""
-    mapping = {}
-    for name, field in LEAVES.items():
-        section, key = name.split('.')
-        meta = field.metadata
-        strategy = (st.sampled_from(meta['options']) if 'options' in meta
-                    else st.dictionaries(st.from_regex('[a-z]+_[0-9]', fullmatch=True),
-                                         st.floats(-1.0e9, 1.0e9)) if name in OPEN
-                    else (st.integers if meta['type'] is int else st.floats)(
-                        meta['low'], meta['high']))
-        mapping.setdefault(section, {})[key] = draw(strategy)
-    return mapping
-
-
-@given(mapping=cases())
+@given(mapping=mappings())
 def test_an_admissible_case_survives_yaml_bit_for_bit(mapping, tmp_path_factory):
     case = parameters.from_mapping(Case, mapping)
     path = tmp_path_factory.mktemp('case') / 'case.yaml'

@@ -229,6 +229,20 @@ def test_fit_of_the_record_itself_is_a_hundred_and_of_its_mean_zero():
     assert nrmse_fit(y, np.full_like(y, y.mean()))[0] == pytest.approx(0.0)
 
 
+@pytest.mark.parametrize('kind, levels', [('pulse', 1), ('doublet', 2), ('prbs', 1)])
+def test_levels_that_outlast_the_record_are_refused_with_the_longest_there_are(kind, levels):
+    chosen = {'experiment__kind': kind, 'experiment__record': 2.0}
+    length = plan.samples(2.0, plan.time_scale(PAPER), PAPER.dt)
+    most = (length - 1) // levels
+    with pytest.raises(BadInput, match=f'experiment.hold = {most + 1} .* at most {most} with '):
+        plan.make(settings(experiment__hold=most + 1, **chosen), PAPER)
+    made = plan.make(settings(experiment__hold=most, **chosen), PAPER)
+    lasts = np.argmax(np.diff(made.inputs[plan.EXPERIMENT]) != 0.0) + 1
+    assert lasts == most or kind == 'prbs'      # whose next bit may be the same
+    with pytest.raises(BadInput, match='fresh.hold = 10000 samples is out of range'):
+        plan.make(settings(fresh__hold=10000), PAPER)
+
+
 def test_a_pulse_above_the_voltage_limit_is_refused_with_both_voltages():
     with pytest.raises(BadInput, match='1400 V.*1250 V.*1300 V'):
         plan.make(settings(experiment__amplitude=1400.0), PAPER)

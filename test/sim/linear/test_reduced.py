@@ -118,6 +118,13 @@ def test_a_disturbance_of_another_shape_is_refused():
         Reduced(fibonacci().model, disturbance=np.ones(2))
 
 
+def test_a_disturbance_too_fast_for_the_time_step_is_refused_with_the_fastest_there_is():
+    model = dataclasses.replace(fibonacci().model, dt=5.0e-4)
+    with pytest.raises(BadInput, match=r'disturbance_frequency = 2010 Hz .* to 1000 Hz, 1/\(2 dt'):
+        Reduced(model, disturbance=np.ones(1), disturbance_frequency=2010.0)
+    Reduced(model, disturbance=np.ones(1), disturbance_frequency=1000.0)
+
+
 def test_a_plant_is_not_written_over_another_without_permission(tmp_path):
     reduced.save(tmp_path / 'model.npz', fibonacci())
     with pytest.raises(BadInput, match='exists'):
