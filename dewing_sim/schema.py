@@ -3,8 +3,7 @@
 """Dataclasses as schemas: a field declares unit, meaning and range, and every value is checked.
 
 `from_mapping` accepts exactly the fields of a dataclass, each with the right type and inside its
-range, and otherwise raises `BadInput` naming field, value, unit and range. What one field demands
-of another is declared beside them, see `relations`.
+range, and otherwise raises `BadInput` naming field, value, unit and range. See also `relations`.
 """
 
 import dataclasses
@@ -15,6 +14,7 @@ from typing import Any, TypeVar
 
 from dewing_sim import relations
 from dewing_sim.errors import BadInput
+from dewing_sim.named_numbers import Numbers
 from dewing_sim.plugins import is_plugin
 
 Section = TypeVar('Section')
@@ -48,29 +48,6 @@ def choice(meaning: str, *options: str, **more: Any) -> Any:
 def text(meaning: str, **more: Any) -> Any:
     """Declare a free-text field, such as a path; it may be empty."""
     return _field(str, '', meaning, **more)
-
-
-class Numbers(Mapping):
-    """Named numbers, immutable and comparable: what an open section holds."""
-
-    def __init__(self, values: Mapping[str, float]):
-        """Keep the values in the order of their names."""
-        self._values = dict(sorted(values.items()))
-
-    def __getitem__(self, name: str) -> float:
-        return self._values[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._values)
-
-    def __len__(self) -> int:
-        return len(self._values)
-
-    def __hash__(self) -> int:
-        return hash(tuple(self._values.items()))
-
-    def __repr__(self) -> str:
-        return f'Numbers({self._values})'
 
 
 def numbers(meaning: str) -> Any:
@@ -135,9 +112,9 @@ def _described(meta: Mapping[str, Any]) -> str:
     if 'options' in meta:
         outside = ' or package.module:Name' if meta.get('open') else ''
         return f"{meta['meaning']}; one of {', '.join(meta['options'])}{outside}"
+    unit = f" [{meta['unit']}]" if meta['unit'] else ''
     if 'low' not in meta:
         return meta['meaning']
-    unit = f" [{meta['unit']}]" if meta['unit'] else ''
     return f"{meta['meaning']}{unit}, from {meta['low']:g} to {meta['high']:g}"
 
 
