@@ -46,6 +46,7 @@ def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) ->
     ``watch(step, processes)`` is called before every step.
     """
     from dewing_control.node import ControllerNode
+    from dewing_sim.machine import signals
     from dewing_sim.ros import harness
     from dewing_sim.ros.node import SimulatorNode
     times, processes = np.full(steps, np.nan), []
@@ -68,7 +69,7 @@ def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) ->
             settings = {'output': folder / 'run.mcap'} if 'recorder' in module else {}
             processes.append(harness.start_node(
                 module, settings, harness.environment(domain, str(folder))))
-            stack.callback(harness.stop_node, processes[-1])
+            stack.callback(signals.end, processes[-1])
         session = stack.enter_context(harness.Session(domain))
         if not children:
             session.add(ControllerNode)

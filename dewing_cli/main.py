@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command ``dewing``: one sentence on standard error for every failure.
 
-Exit status: 0 done, 1 the run or a gate failed, 2 bad input, 130 interrupted.
+Exit status: 0 done, 1 the run or a gate failed, 2 bad input; interrupted 130 by Ctrl-C, 143 by
+SIGTERM and 129 by SIGHUP, with what was computed kept alike.
 """
 
 import argparse
@@ -12,15 +13,17 @@ import os
 import pkgutil
 import sys
 import warnings
+from contextlib import suppress
 from types import ModuleType
 from typing import Sequence
 
 from dewing_cli import commands
 from dewing_sim.errors import BadInput, DewingError
+from dewing_sim.machine.signals import Stop, status_of
 
 # The small systems of a step gain nothing from threads, and one thread rounds as the nodes do.
 THREADS = ('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS', 'NUMBA_NUM_THREADS')
-DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+DONE, FAILED, BAD_INPUT = 0, 1, 2
 
 
 class Parser(argparse.ArgumentParser):
@@ -64,14 +67,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
         try:
-            arguments = build_parser().parse_args(argv)
-            return arguments.run(arguments) or DONE
+            with Stop():
+                arguments = build_parser().parse_args(argv)
+                return arguments.run(arguments) or DONE
         except BadInput as error:
             return _complain(error, BAD_INPUT)
         except (DewingError, OSError) as error:
             return _complain(error, FAILED)
-        except KeyboardInterrupt:
-            return _complain('interrupted', INTERRUPTED)
+        except KeyboardInterrupt as error:
+            return _complain('interrupted', status_of(error))
 
 
 def _write_every_character() -> None:
@@ -82,7 +86,8 @@ def _write_every_character() -> None:
 
 
 def _complain(error: object, status: int) -> int:
-    print('dewing:', ' '.join(str(error).split()), file=sys.stderr)
+    with suppress(OSError):             # of a terminal that is gone
+        print('dewing:', ' '.join(str(error).split()), file=sys.stderr)
     return status
 
 

@@ -1,12 +1,13 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a long run shows and how it stops: a progress bar, step times, an orderly Ctrl-C."""
+"""What a long run shows and how it stops: a progress bar, step times, an orderly end."""
 
-import signal
 import sys
 import time
 from contextlib import contextmanager
 from typing import Callable, Iterable, Iterator, TypeVar
+
+from dewing_sim.machine.signals import Stop
 
 Item = TypeVar('Item')
 
@@ -63,23 +64,12 @@ class Laps:
 
 
 def until_interrupted(items: Iterable[Item]) -> Iterator[Item]:
-    """Yield from ``items``; a Ctrl-C takes effect between two of them, a second one at once.
+    """Yield from ``items``; a signal that asks for the end takes effect between two of them.
 
-    Raises `KeyboardInterrupt` after the consumer has dealt with the item in hand.
+    Raises `Interrupted` after the consumer has dealt with the item in hand, on a second Ctrl-C
+    at once.
     """
-    asked = False
-
-    def ask(number, frame):
-        nonlocal asked
-        if asked:
-            raise KeyboardInterrupt
-        asked = True
-
-    previous = signal.signal(signal.SIGINT, ask)
-    try:
+    with Stop(orderly=True) as stop:
         for item in items:
             yield item
-            if asked:
-                raise KeyboardInterrupt
-    finally:
-        signal.signal(signal.SIGINT, previous)
+            stop.check()

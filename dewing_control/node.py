@@ -147,5 +147,5 @@ def settings_of(node: Node) -> ControllerSettings:
 
 
 def main(args=None) -> int:
-    """Run the controller until SIGINT or SIGTERM; return the exit status."""
+    """Run the controller until a signal asks for the end; return the exit status."""
     return harness.main(ControllerNode, args)

@@ -244,5 +244,5 @@ class SysidNode(Node):
 
 
 def main(args=None) -> int:
-    """Run the identification until its end, SIGINT or SIGTERM; return the exit status."""
+    """Run the identification until its end or a signal that asks for it; return the status."""
     return harness.main(SysidNode, args)

@@ -17,6 +17,7 @@ from dewing_cli import options, results
 from dewing_cli.progress import bar
 from dewing_sim.files import check_free, new_file
 from dewing_sim.fluid import engines
+from dewing_sim.machine.signals import undisturbed
 
 REPORT, NUMBERS, SERIES, RUNS = 'report.html', 'paper.json', 'csv', 'runs'
 
@@ -68,8 +69,9 @@ def compute(plan: Any, folder: Path, where: Any, quiet: bool) -> tuple[dict, flo
     finished = set(known)
 
     def finish(name: str, result: Any) -> None:
-        keep(paths[name], result, marks[name])
-        finished.add(name)
+        with undisturbed():
+            keep(paths[name], result, marks[name])
+            finished.add(name)
 
     began = time.perf_counter()
     try:

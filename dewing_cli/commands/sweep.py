@@ -17,6 +17,7 @@ from dewing_cli import options, results
 from dewing_cli.progress import bar
 from dewing_sim.files import check_free
 from dewing_sim.machine import jobs
+from dewing_sim.machine.signals import undisturbed
 
 SHOWN = ('cl_mean', 'cl_amplitude', 'cd_mean', 'strouhal', 'camber_mean', 'y_star',
          'camber_max_x_c')
@@ -81,9 +82,10 @@ def _compute(arguments: argparse.Namespace, table: Any, workers: Any, show: Any)
     finished = len(sweep.points) - len(wanted)
     show(finished, len(sweep.points))
     for batch in run_points(sweep, wanted, workers):
-        for point, result in batch:
-            table.put(point.index, sweep.fingerprint(point), result)
-        table.save(arguments.out, overwrite=True)
+        with undisturbed():
+            for point, result in batch:
+                table.put(point.index, sweep.fingerprint(point), result)
+            table.save(arguments.out, overwrite=True)
         finished += len(batch)
         show(finished, len(sweep.points))
 

@@ -24,6 +24,7 @@ from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.files import check_free
+from dewing_sim.machine.signals import Stop, end
 from dewing_sim.parameters import Case
 from dewing_sim.records import bag
 from dewing_sim.ros import harness
@@ -82,13 +83,12 @@ def perform(demo: Demo, overwrite: bool = False) -> dict[str, Any]:
     demo.out.mkdir(parents=True, exist_ok=True)
     (demo.out / 'case.yaml').write_text(parameters.to_yaml(demo.case), encoding='utf-8')
     try:
-        with harness.Stop() as stop:
+        with Stop() as stop:
             trim(demo)
             stop.orderly = True
             for name in RUNS:
                 record(demo, name, stop)
-                if stop.asked:
-                    raise KeyboardInterrupt
+                stop.check()
     except KeyboardInterrupt:
         report_kept(demo)
         raise
@@ -102,7 +102,7 @@ def trim(demo: Demo) -> None:
         Wing(demo.case).rest(show)
 
 
-def record(demo: Demo, name: str, stop: harness.Stop) -> None:
+def record(demo: Demo, name: str, stop: Stop) -> None:
     """Run one of `RUNS` to its end, or until ``stop`` is asked for, and leave its bag."""
     closed = name == 'closed_loop'
     with ExitStack() as stack:
@@ -113,7 +113,7 @@ def record(demo: Demo, name: str, stop: harness.Stop) -> None:
         def start(module: str, settings: dict[str, Any]) -> Popen:
             log = stack.enter_context(open(folder / f'{module}.txt', 'wb'))
             process = harness.start_node(module, settings, env, stdout=log, stderr=log)
-            stack.callback(harness.stop_node, process)
+            stack.callback(end, process)
             return process
 
         start('dewing_sim.ros.recorder', {'output': demo.bag(name).resolve()})

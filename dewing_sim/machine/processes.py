@@ -21,6 +21,7 @@ from typing import Any, Mapping
 
 from dewing_sim.errors import RunFailed
 from dewing_sim.machine.jobs import SINGLE_THREAD, Failed, Job, execute
+from dewing_sim.machine.signals import ENDS
 
 CHANCES = 2                 # alone
 KILLED = 'its process was killed again and again; perhaps there is too little memory'
@@ -32,7 +33,8 @@ def _begin(shares: Any, parent: Any) -> None:
     """Prepare a process: shares are reported to ``shares``, and it ends when ``parent`` closes."""
     global _shares
     _shares = shares
-    signal.signal(signal.SIGINT, signal.SIG_IGN)        # the parent ends us in order
+    for number in ENDS:
+        signal.signal(number, signal.SIG_IGN)       # the parent ends us in order
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
 
 
@@ -138,11 +140,11 @@ class Processes:
 
 @contextmanager
 def _without_interrupts():
-    """Let processes that are started here inherit that Ctrl-C is for the parent only."""
+    """Let processes that are started here inherit that the parent alone hears Ctrl-C."""
     if not hasattr(signal, 'pthread_sigmask'):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDS)
     try:
         yield
     finally:

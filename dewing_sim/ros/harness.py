@@ -16,7 +16,6 @@ waits on sets. It is spun by `spin_once`: in rclpy 7.1 its ``spin`` delivers not
 
 import os
 import random
-import signal
 import socket
 import subprocess
 import sys
@@ -24,7 +23,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import inf
 from pathlib import Path
-from threading import current_thread, main_thread
 from time import monotonic
 from typing import Any
 
@@ -37,6 +35,7 @@ from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 
 from dewing_sim.errors import BadInput, DewingError, RunFailed
+from dewing_sim.machine.signals import Stop
 
 SPIN = 0.2                      # s, longest time without a look at signals and conditions
 DOMAINS = range(1, 102)         # usable on every system without clashing with ephemeral ports
@@ -80,7 +79,7 @@ class Session:
     def spin_until(self, condition: Callable[[], bool], timeout: float = inf) -> None:
         """Spin until ``condition()``; raise `RunFailed` after ``timeout`` s of wall time.
 
-        A signal meanwhile raises `KeyboardInterrupt` between two callbacks.
+        A signal that asks for the end raises `Interrupted` between two callbacks.
         """
         deadline = monotonic() + timeout
         with Stop(orderly=True) as stop:
@@ -89,8 +88,7 @@ class Session:
                 if remaining <= 0.0:
                     raise RunFailed(f'the condition did not hold within {timeout:g} s')
                 self.executor.spin_once(timeout_sec=min(SPIN, remaining))
-                if stop.asked:
-                    raise KeyboardInterrupt
+                stop.check()
 
     def watch_clock(self) -> 'ClockWatch':
         """Return a node that knows the simulated time published in this domain."""
@@ -122,8 +120,8 @@ def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
     """Spin the node of this process until it ends or a signal comes; return the exit status.
 
     The node may have ``exit_status`` (None while it runs) and ``reason``, and must have
-    ``interrupt()``, which is called on SIGINT and SIGTERM while ROS still works. Bad parameters
-    give one sentence on standard error and status 2, failures status 1.
+    ``interrupt()``, which is called on SIGINT, SIGTERM and SIGHUP while ROS still works. Bad
+    parameters give one sentence on standard error and status 2, failures status 1.
     """
     try:
         with Stop() as stop:
@@ -136,34 +134,6 @@ def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
         return 0
     finally:
         rclpy.try_shutdown()
-
-
-class Stop:
-    """SIGINT and SIGTERM inside a ``with``: an exception at once, or once ``orderly`` a note.
-
-    rclpy loses an exception that a handler raises while a callback runs, hence the note. The
-    second signal always raises. Python handles signals in its main thread: elsewhere this is void.
-    """
-
-    def __init__(self, orderly: bool = False):
-        """Note the first signal if ``orderly``."""
-        self.orderly, self.asked = orderly, False
-        self._previous: dict[int, Any] = {}
-
-    def __enter__(self) -> 'Stop':
-        if current_thread() is main_thread():
-            self._previous = {number: signal.signal(number, self._note)
-                              for number in (signal.SIGINT, signal.SIGTERM)}
-        return self
-
-    def __exit__(self, *_error):
-        for number, handler in self._previous.items():
-            signal.signal(number, handler)
-
-    def _note(self, _number, _frame):
-        if self.asked or not self.orderly:
-            raise KeyboardInterrupt
-        self.asked = True
 
 
 def _spin(node: Node, stop: Stop) -> int:
@@ -229,14 +199,3 @@ def _yaml_word(value: Any) -> str:
         mantissa, e, exponent = repr(value).partition('e')
         return (mantissa if '.' in mantissa else f'{mantissa}.0') + e + exponent
     return f"'{value}'" if isinstance(value, (str, os.PathLike)) else str(value)
-
-
-def stop_node(process: subprocess.Popen, patience: float = 30.0) -> int:
-    """Ask the process group to end by SIGINT, kill it after ``patience`` s; return its status."""
-    if process.poll() is None:
-        os.killpg(process.pid, signal.SIGINT)
-    try:
-        return process.wait(patience)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGKILL)
-        return process.wait()

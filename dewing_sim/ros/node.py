@@ -244,5 +244,5 @@ class SimulatorNode(Node):
 
 
 def main(args=None) -> int:
-    """Run the simulator until its end, SIGINT or SIGTERM; return the exit status."""
+    """Run the simulator until its end or a signal that asks for it; return the exit status."""
     return harness.main(SimulatorNode, args)

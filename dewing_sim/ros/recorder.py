@@ -110,5 +110,5 @@ class RecorderNode(Node):
 
 
 def main(args=None) -> int:
-    """Record until SIGINT or SIGTERM; return the exit status."""
+    """Record until a signal asks for the end; return the exit status."""
     return harness.main(RecorderNode, args)

@@ -4,6 +4,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +15,8 @@ import pytest
 from dewing_cli import main as cli
 from dewing_cli.commands import simulate
 from dewing_sim import parameters
-from dewing_sim.records.history import History
+from dewing_sim.machine.signals import ENDS
+from dewing_sim.records.history import History, Recorder
 
 PROJECT = Path(__file__).parents[2]
 QUICK = ['--grid', 'fast', '--set', 'numerics.trim_time=0.1', '--quiet']
@@ -156,21 +158,27 @@ def test_a_field_above_breakdown_is_a_warning_of_one_line(capsys):
     assert capsys.readouterr().err == ''
 
 
-def test_an_interrupted_run_is_kept_and_ends_with_status_130(capsys, monkeypatch):
-    import signal
-
-    from dewing_sim.records.history import Recorder
-
+@pytest.mark.parametrize('numbers', [
+    (signal.SIGINT,), (signal.SIGTERM, signal.SIGTERM), (signal.SIGHUP, signal.SIGTERM)])
+def test_an_interrupted_run_is_kept_and_says_by_what(capsys, monkeypatch, numbers):
+    """A shell and a service manager may send what is no Ctrl-C twice, also during the save."""
     def add(recorder, outputs):
         original(recorder, outputs)
         if len(recorder) == 5:
-            signal.raise_signal(signal.SIGINT)
-    original = Recorder.add
+            signal.raise_signal(numbers[0])
+
+    def history(recorder):
+        for number in numbers[1:]:
+            signal.raise_signal(number)
+        return finished(recorder)
+    original, finished = Recorder.add, Recorder.history
+    monkeypatch.setattr(Recorder, 'history', history)
     monkeypatch.setattr(Recorder, 'add', add)
     options = ['simulate', *QUICK, '--duration', '0.01', '--out', 'run.npz']
-    assert fails(capsys, options, 130) == 'dewing: interrupted'
+    before = [signal.getsignal(number) for number in ENDS]
+    assert fails(capsys, options, 128 + numbers[0]) == 'dewing: interrupted'
     assert len(History.load('run.npz')) == 5
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert [signal.getsignal(number) for number in ENDS] == before
 
 
 def test_a_run_that_fails_is_kept_and_ends_with_status_1(capsys, monkeypatch):

@@ -330,8 +330,8 @@ def test_the_command_from_an_interrupt_to_the_report(tmp_path, monkeypatch, caps
         env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
     while not list(out.glob('runs/*.npz')) and process.poll() is None:
         time.sleep(0.2)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(60) == 130
+    process.send_signal(signal.SIGHUP)
+    assert process.wait(60) == 128 + signal.SIGHUP
     kept, interrupted = process.stderr.read().splitlines()
     assert re.match(r'dewing: kept [1-9]\d* of \d+ runs in ', kept)
     assert interrupted == 'dewing: interrupted'

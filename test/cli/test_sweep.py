@@ -238,13 +238,14 @@ def wait_for_the_first_point(process):
 
 
 @pytest.mark.slow
-def test_a_sweep_of_processes_is_interrupted_and_goes_on_elsewhere(cluster):
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_sweep_of_processes_is_interrupted_and_goes_on_elsewhere(cluster, number):
     command = ['--vary', 'numerics.trim_time=0.1,80.0', '--out', 'sweep.nc']
     process = start(*command, '--jobs', '2')
     wait_for_the_first_point(process)
-    os.killpg(process.pid, signal.SIGINT)           # as Ctrl-C on a terminal does
+    os.killpg(process.pid, number)                  # as Ctrl-C on a terminal does
     said, complaint = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 130, complaint
+    assert process.returncode == 128 + number, complaint
     assert complaint == 'dewing: interrupted\n' and '1 missing, 1 done' in said
     first = xarray.load_dataset('sweep.nc')
     assert first.status.values.tolist() == [DONE, 0]

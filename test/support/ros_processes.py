@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulator, controller and recorder of a linear wing as processes over DDS, for the tests."""
 
-import os
-import signal
 import time
 from contextlib import contextmanager
 
@@ -15,6 +13,7 @@ from dewing_control.trial.closed_loop import closed_loop, controller
 from dewing_sim import parameters
 from dewing_sim.identity import Identity
 from dewing_sim.linear import reduced
+from dewing_sim.machine.signals import end
 from dewing_sim.plant import Measurement
 from dewing_sim.records import bag
 from dewing_sim.ros import harness
@@ -22,6 +21,7 @@ from dewing_sim.ros import harness
 MODULES = dict(simulator='dewing_sim.ros.node', controller='dewing_control.node',
                recorder='dewing_sim.ros.recorder')
 PATIENCE = 300.0            # s, for a machine that is busy with other things
+FAREWELL = 60.0             # s, for a process to end before it is killed
 
 
 class Graph:
@@ -53,8 +53,9 @@ class Graph:
         return (self.folder / f'{name}.txt').read_text()
 
     def stop(self):
+        """End what is left, whatever state it is in."""
         for process in self.processes:
-            harness.stop_node(process, PATIENCE)
+            end(process, FAREWELL)
 
 
 @contextmanager
@@ -72,11 +73,6 @@ def wait_until(condition):
     while not condition():
         assert time.monotonic() < deadline, 'the condition did not come true in time'
         time.sleep(0.05)
-
-
-def kill(process):
-    os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
 
 
 def simulated_time(path):

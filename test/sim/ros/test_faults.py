@@ -16,7 +16,6 @@ from reduced_wing import first_mode
 from ros_processes import (
     PATIENCE,
     graph,
-    kill,
     last_status,
     offline,
     simulated_time,
@@ -25,6 +24,7 @@ from ros_processes import (
 from sensor_msgs.msg import JointState
 
 from dewing_control.node import ControllerNode
+from dewing_sim.machine.signals import end, kill
 from dewing_sim.records import bag
 from dewing_sim.ros import harness, messages, qos
 
@@ -83,7 +83,7 @@ def test_unusable_stale_and_repeated_commands_of_another_node_change_nothing(bot
     ros.start('controller')
     session.spin_until(lambda: simulator.poll() is not None, PATIENCE)
     assert simulator.returncode == 0
-    harness.stop_node(ros.processes[0], PATIENCE)
+    end(ros.processes[0], PATIENCE)
     assert_as_offline(path, 200)
     _, values = last_status(path)
     assert int(values['rejected']) > 0 and int(values['stale']) > 0
@@ -98,8 +98,8 @@ def test_two_controllers_are_reported_and_every_step_is_made_once(both):
     doctor = session.add(Doctor)
     session.spin_until(lambda: '2 controllers: the first answer to a measurement counts'
                        in doctor.sentences and int(doctor.values['stale']) > 0, PATIENCE)
-    assert harness.stop_node(simulator, PATIENCE) == 0
-    harness.stop_node(ros.processes[0], PATIENCE)
+    assert end(simulator, PATIENCE) == 0
+    end(ros.processes[0], PATIENCE)
     time = bag.series(path, '/dewing/measurement')['time']
     np.testing.assert_allclose(time, 1.0e-4 * np.arange(len(time)), atol=1.0e-9)
     assert doctor.values['rejected'] == '0'
@@ -121,7 +121,7 @@ def test_a_slow_controller_gives_the_same_run_bit_for_bit(both):
     simulator = ros.simulator(duration=0.01, subscribers=2, resend_period=0.05)
     session.add(Slow)
     session.spin_until(lambda: simulator.poll() is not None, PATIENCE)
-    harness.stop_node(ros.processes[0], PATIENCE)
+    end(ros.processes[0], PATIENCE)
     assert_as_offline(path, 100)
 
 
@@ -168,7 +168,7 @@ def test_a_recorder_that_does_not_run_holds_the_loop_up_and_loses_nothing(both):
                                    for said in doctor.sentences), PATIENCE)
     ros.processes[0].send_signal(signal.SIGCONT)
     assert simulator.wait(PATIENCE) == 0
-    harness.stop_node(ros.processes[0], PATIENCE)
+    end(ros.processes[0], PATIENCE)
     assert_as_offline(path, 6000)
 
 

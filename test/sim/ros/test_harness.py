@@ -98,7 +98,7 @@ def test_spinning_ends_with_a_sentence_when_the_condition_does_not_come(session)
         session.spin_until(lambda: False, 0.3)
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_is_not_lost_in_a_callback(session, number):
     session.watch_clock().create_timer(0.05, lambda: os.kill(os.getpid(), number))
     handler = signal.getsignal(number)

@@ -8,17 +8,10 @@ import signal
 import numpy as np
 import pytest
 from reduced_wing import first_mode
-from ros_processes import (
-    PATIENCE,
-    graph,
-    kill,
-    last_status,
-    offline,
-    simulated_time,
-    wait_until,
-)
+from ros_processes import PATIENCE, graph, last_status, offline, simulated_time, wait_until
 
 from dewing_sim.linear import reduced
+from dewing_sim.machine.signals import kill
 from dewing_sim.records import bag
 
 
@@ -89,7 +82,7 @@ def test_a_restarted_controller_carries_on_without_a_bump(tmp_path):
     assert run['camber_mean'][-1] == pytest.approx(1.10 * 26.0e-6, rel=0.005)
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signals_end_every_process_cleanly(tmp_path, number):
     with graph(tmp_path) as ros:
         path = ros.recorder()

@@ -4,9 +4,10 @@
 
 import numpy as np
 import pytest
-from ros_processes import PATIENCE, graph, kill, simulated_time, wait_until
+from ros_processes import PATIENCE, graph, simulated_time, wait_until
 
 from dewing_sim.errors import BadInput
+from dewing_sim.machine.signals import kill
 from dewing_sim.records import bag
 
 KIND = 'sensor_msgs/msg/JointState'

@@ -1,0 +1,84 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""Signals that ask for an end, and ends of processes that do not want to."""
+
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from dewing_sim.machine.signals import ENDS, Interrupted, Stop, end, kill, status_of, undisturbed
+
+PATIENCE = 60.0
+POLITE = 'print("ready", flush=True); import time; time.sleep(1000)'
+DEAF = 'import signal\nfor n in signal.SIGINT, signal.SIGTERM: signal.signal(n, lambda *_: None)\n'
+
+
+def start(code):
+    process = subprocess.Popen([sys.executable, '-c', code], start_new_session=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    assert process.stdout.readline() == b'ready\n'
+    return process
+
+
+@pytest.mark.parametrize('number', ENDS)
+def test_every_signal_raises_at_once_and_names_its_status(number):
+    before = [signal.getsignal(each) for each in ENDS]
+    with pytest.raises(Interrupted) as caught, Stop():
+        signal.raise_signal(number)
+    assert status_of(caught.value) == 128 + number
+    assert [signal.getsignal(each) for each in ENDS] == before
+    assert status_of(KeyboardInterrupt()) == 130
+
+
+@pytest.mark.parametrize('number', ENDS)
+def test_an_orderly_end_notes_the_first_and_only_ctrl_c_twice_is_impatience(number):
+    with pytest.raises(Interrupted), Stop(orderly=True) as stop:
+        signal.raise_signal(number)
+        signal.raise_signal(signal.SIGTERM)
+        signal.raise_signal(signal.SIGHUP)
+        assert stop.asked and stop.number == number
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_what_was_asked_of_an_inner_one_is_not_asked_again_of_the_outer_one():
+    with Stop() as outer:
+        with Stop(orderly=True):
+            signal.raise_signal(signal.SIGHUP)
+        assert outer.number == signal.SIGHUP
+        signal.raise_signal(signal.SIGTERM)         # as a shell does while results are saved
+        with pytest.raises(Interrupted):
+            signal.raise_signal(signal.SIGINT)
+
+
+def test_a_save_is_not_disturbed():
+    saved = []
+    with pytest.raises(Interrupted), undisturbed():
+        signal.raise_signal(signal.SIGTERM)
+        saved.append(True)
+    assert saved
+
+
+def test_a_hangup_that_nohup_ignores_stays_ignored():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Stop() as stop:
+            signal.raise_signal(signal.SIGHUP)
+        assert not stop.asked and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_a_stopped_process_is_continued_and_asked():
+    process = start(POLITE)
+    process.send_signal(signal.SIGSTOP)
+    assert end(process, PATIENCE) == -signal.SIGINT
+    assert end(process, PATIENCE) == -signal.SIGINT     # once more changes nothing
+
+
+def test_a_deaf_process_is_killed_stopped_or_not():
+    processes = [start(DEAF + POLITE) for _ in range(2)]
+    assert end(processes[0], 0.2) == -signal.SIGKILL
+    processes[1].send_signal(signal.SIGSTOP)
+    assert kill(processes[1]) == -signal.SIGKILL
