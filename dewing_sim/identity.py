@@ -12,11 +12,14 @@ import yaml
 
 from dewing_sim import yaml_text
 from dewing_sim.errors import BadInput
-from dewing_sim.parameters import Case
+from dewing_sim.parameters import Case, from_mapping
 from dewing_sim.plant import Outputs, Plant, units_of
 from dewing_sim.quantities import Absent, schema
 from dewing_sim.scales import Scales
 from dewing_sim.schema import shown
+
+LEAST = 1.0e-3          # of y_ref: a smaller camber is no reference
+DOUBTFUL = 1.0e-4       # chords: a larger camber is one whatever y_ref
 
 
 def version() -> str:
@@ -34,14 +37,38 @@ def loss_of_tension(case: Case) -> float:
     return membrane.sheet.loss_of_tension_v_squared(case.membrane.prestretch)
 
 
+def reference_deflection(case: Case) -> float:
+    """Return y_ref = q c^2 / (8 T0) in m, T0 the tension of ``case`` without voltage."""
+    from dewing_sim.structure.sheet import Sheet
+    section = case.membrane
+    tension = Sheet.from_parameters(section).respond([section.prestretch], 0.0).tension[0]
+    return case.flow.dynamic_pressure * section.chord**2 / (8.0 * float(tension))
+
+
+def require_reference(what: str, camber: float, case: Case | None) -> float:
+    """Return ``camber`` (m) if others may be measured in it; raise `BadInput` otherwise.
+
+    It may be negative, but is to exceed `LEAST` of y_ref, below which it may be rounding. Of a
+    plant without ``case`` only that it is not zero can be told.
+    """
+    scale = 0.0
+    if case is not None and not abs(camber) > DOUBTFUL * case.membrane.chord:
+        scale = reference_deflection(case)
+    if abs(camber) > LEAST * scale:
+        return camber
+    than = f', less than {LEAST:g} of y_ref = {scale:.3g} m' if scale else ''
+    raise BadInput(f'{what}: the passive camber is {camber:.3g} m{than}: nothing can be measured '
+                   'in it, nor a target be a multiple of it; change the angle of attack')
+
+
 @dataclass(frozen=True)
 class Identity:
     """Time step, references and limits of a plant, with the case it was built from."""
 
     plant: str                      # wing or reduced
     dt: float                       # s
-    camber_mean: float | None       # m, passive: a_ref of a controller on mean camber
-    camber_max: float | None        # m, passive: a_ref on maximum camber; None: not an output
+    camber_mean: float | None       # m, passive: a_ref of a controller on it, of either sign
+    camber_max: float | None        # m, the same of the largest; None: not an output
     v_squared_slack: float          # V^2 at the loss of tension, V_L^2
     v_squared_max: float            # V^2 the plant accepts
     case: dict                      # nested parameters of the case, empty when unknown
@@ -78,21 +105,29 @@ class Identity:
                      if name in known.measured or name not in known.units)
 
     def passive(self, output: str) -> float:
-        """Return the passive camber in m by name; raise `Absent` if the plant does not have it."""
+        """Return the passive camber in m by name, to measure others in.
+
+        Raises `Absent` if the plant does not have it, `BadInput` if it is none to speak of, see
+        `require_reference`.
+        """
         value = getattr(self, output)
         if value is None:
             raise Absent(f'the plant ({self.plant}) has no output {output}: it has '
                          f'{", ".join(self.units)}')
-        return value
+        case = from_mapping(Case, self.case) if self.case else None
+        return require_reference(output, value, case)
 
     def checked(self) -> 'Identity':
-        """Return self; raise `BadInput` unless every number is positive and finite."""
+        """Return self; raise `BadInput` unless cambers are finite and other numbers positive."""
         for name in ('dt', 'camber_mean', 'camber_max', 'v_squared_slack', 'v_squared_max'):
             value = getattr(self, name)
-            if value is None and name.startswith('camber'):
+            signed = name.startswith('camber')
+            if value is None and signed:
                 continue
-            if not (isinstance(value, float) and math.isfinite(value) and value > 0.0):
-                raise BadInput(f'identity: {name} = {shown(value)} is not a positive number')
+            if not (isinstance(value, float) and math.isfinite(value)
+                    and (signed or value > 0.0)):
+                raise BadInput(f'identity: {name} = {shown(value)} is not a '
+                               f'{"finite" if signed else "positive"} number')
         return self
 
     def to_yaml(self) -> str:

@@ -18,7 +18,7 @@ class Outputs:
     """Observable quantities at one instant; SI units, loads per unit span.
 
     ``x, y`` are the membrane nodes in the wing frame (x from the leading edge along the chord,
-    y towards the suction side), ``pressure_jump`` the pressure below minus above at these nodes;
+    y towards the upper side), ``pressure_jump`` the pressure below minus above at these nodes;
     all three have the same shape ``(nodes,)``.
 
     An output that a plant does not have is None. It is never published and never recorded: the
@@ -32,13 +32,13 @@ class Outputs:
 
     time: float = output('s', 'time since the rest state', required=True)
     camber_mean: float | None = output('m', 'chord average of y', measured=True, topic='camber')
-    camber_max: float | None = output('m', 'largest camber', measured=True)
+    camber_max: float | None = output('m', 'deflection of largest magnitude', measured=True)
     cl: float | None = output('-', 'lift coefficient', measured=True, topic='cl')
     cd: float | None = output('-', 'drag coefficient', measured=True)
     v_squared: float = output('V^2', 'V^2 held during the step that led here', measured=True,
                               topic='v_squared', required=True)
     cm: float | None = output('-', 'pitching moment coefficient about c/4, nose up')
-    camber_max_position: float | None = output('-', 'x/c of the largest camber')
+    camber_max_position: float | None = output('-', 'x/c of the largest deflection')
     tension: float | None = output('N/m', 'chord average of the tension')
     electric_field: float | None = output('V/m', 'largest true field V/h along the chord')
     capacitance: float | None = output('F/m', 'capacitance of the electrodes, per unit span')

@@ -153,11 +153,14 @@ def electrode_ratio(x: np.ndarray, y: np.ndarray, thickness: np.ndarray) -> floa
 
 
 def peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Return the largest deflection and its place, by a parabola through three nodes.
+    """Return the deflection of largest magnitude and its place, by a parabola through three nodes.
 
-    A membrane that bends down everywhere is highest at an edge.
+    It is negative where the membrane bends down further than up.
     """
-    k = int(np.argmax(y))
+    k = int(np.argmax(np.abs(y)))
+    if y[k] < 0.0:
+        depth, place = peak(x, -y)
+        return -depth, place
     if k in (0, len(y) - 1):
         return float(y[k]), float(x[k])
     before, after = float(x[k] - x[k - 1]), float(x[k + 1] - x[k])

@@ -145,20 +145,30 @@ def _metrics(arguments, case: Case, loop: Loop, history, laps: Laps) -> dict:
     import numba
 
     from dewing_cli.run_metrics import averages
-    from dewing_sim.records.spectrum import peaks, relative
+    from dewing_sim.records.spectrum import peaks
     end = float(history.time[-1])
     start = 0.5 * end if arguments.skip is None or arguments.skip >= end else arguments.skip
     late = history.since(start)
-    mean, amplitude = relative(late.camber_mean, loop.rest.camber_mean)
     return {
         'case': arguments.case, 'engine': loop.plant.case.numerics.engine,
         'grid': case.numerics.grid,
         'dt': loop.plant.dt, 'steps': len(history), 'duration': end, 'averaged_from': start,
-        **averages(late, loop.plant.reference_deflection),
-        'camber_mean_relative': mean, 'camber_amplitude_relative': amplitude,
+        **averages(late, loop.plant.reference_deflection), **_relative(late, loop),
         'v_min': float(late.voltage.min()), 'v_max': float(late.voltage.max()),
         'rtf': end / laps.total, 'ms_per_step': 1.0e3 * laps.best(),
         'threads': numba.get_num_threads(),
-        'spectrum_peaks_hz': peaks(late.cl, loop.plant.dt),
-        'camber_peaks_hz': peaks(late.camber_mean, loop.plant.dt),
+        'spectrum_peaks_hz': peaks(late.cl, loop.plant.dt, scale=1.0),
+        'camber_peaks_hz': peaks(late.camber_mean, loop.plant.dt,
+                                 scale=loop.plant.reference_deflection),
     }
+
+
+def _relative(late, loop: Loop) -> dict[str, float]:
+    """Return mean camber and its amplitude relative to rest, nothing of a wing flat at rest."""
+    from dewing_sim.identity import LEAST
+    from dewing_sim.records.spectrum import relative
+    passive = loop.rest.camber_mean
+    if not abs(passive) > LEAST * loop.plant.reference_deflection:
+        return {}
+    mean, amplitude = relative(late.camber_mean, passive)
+    return {'camber_mean_relative': mean, 'camber_amplitude_relative': amplitude}

@@ -96,10 +96,14 @@ def perform(demo: Demo, overwrite: bool = False) -> dict[str, Any]:
 
 
 def trim(demo: Demo) -> None:
-    """March the wing to its rest state, once: the simulators find it in the cache."""
-    from dewing_sim.wing import Wing
+    """March the wing to its rest state, once: the simulators find it in the cache.
+
+    Raises `BadInput` if the controller cannot be designed for this wing.
+    """
+    from dewing_control.trial.closed_loop import controller
+    from dewing_sim.build import build_wing
     with bar('trim', quiet=demo.quiet) as show:
-        Wing(demo.case).rest(show)
+        controller(demo.settings, build_wing(demo.case, show).identity)
 
 
 def record(demo: Demo, name: str, stop: Stop) -> None:

@@ -43,7 +43,7 @@ class Run:
     @property
     def camber(self) -> np.ndarray:
         """Mean camber relative to the passive one, minus one."""
-        return self.series['camber_mean'] / self.identity.camber_mean - 1.0
+        return self.series['camber_mean'] / self.identity.passive('camber_mean') - 1.0
 
     @property
     def voltage(self) -> np.ndarray:

@@ -35,7 +35,7 @@ METRICS = {
     'cl_rms': ('-', 'standard deviation of the lift coefficient'),
     'cl_amplitude': ('-', 'half the range of the lift coefficient'),
     'strouhal': ('-', 'f c / U of the strongest line of the lift, missing if it is steady'),
-    'y_star': ('-', 'mean largest camber over q c^2 / (8 T0)'),
+    'y_star': ('-', 'mean largest deflection over q c^2 / (8 T0)'),
     'camber_amplitude': ('m', 'half the range of the chord average of the camber'),
     'electric_field_max': ('V/m', 'largest true field V/h along the chord and in time'),
     'seconds': ('s', 'wall time of the point, rest state included'),

@@ -21,7 +21,9 @@ import numpy as np
 from scipy import linalg
 
 from dewing_sim.errors import BadInput
+from dewing_sim.identity import require_reference
 from dewing_sim.linear.model import Model
+from dewing_sim.parameters import from_yaml
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -40,16 +42,16 @@ class Design:
     def of(cls, model: Model, output: str, steps: int = 1) -> 'Design':
         """Return the model of ``output``, held and sampled every ``steps`` of its time steps.
 
-        Raises `BadInput` if the model lacks the output, has no positive static gain or is
+        Raises `BadInput` if the model lacks the output, has no camber at rest, no static gain that
+        increases it, or is
         unstable: it could not be told what V^2 a camber needs.
         """
         if output not in model.output_names:
             raise BadInput(f'the model has no output {output}, only '
                            f"{', '.join(model.output_names)}")
         row = model.output_names.index(output)
-        camber = float(model.operating_outputs[row])
-        if not camber > 0.0:
-            raise BadInput(f'the model has {output} = {camber:g} m at rest, not a positive camber')
+        camber = require_reference(f'{output} of the model', float(model.operating_outputs[row]),
+                                   from_yaml(model.case_yaml) if model.case_yaml else None)
         a, b = _every(model.a, model.b[:, 0], steps)
         slack = model.v_squared_slack
         design = cls.normalised(a, b * slack, model.c[row] / camber, steps * model.dt,

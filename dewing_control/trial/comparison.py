@@ -80,7 +80,7 @@ def run_scenario(plan: Plan, name: str, names: Sequence[str] = CONTROLLERS,
     for which in names:
         run = trial.run(built.plant, built.rest, controller(which, plan, scenario, built.identity),
                         round(plan.duration / built.plant.dt), scenario.noise,
-                        passive=built.identity.camber_mean)
+                        passive=built.identity.passive('camber_mean'))
         figures = trial.figures(run, scenario.target, built.identity.v_squared_max, plan.skip)
         results[which] = figures, run
     for figures, _ in results.values():

@@ -11,6 +11,7 @@ import numpy as np
 from dewing_control.law.supervisor import Controller
 from dewing_control.trial.energy import Energy
 from dewing_sim.errors import RunFailed
+from dewing_sim.identity import require_reference
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.plant import Measurement, Plant
 from dewing_sim.quantities import Absent
@@ -45,13 +46,15 @@ def run(plant: Plant, rest: Any, controller: Controller | None, steps: int, nois
     ``passive`` is the camber (m) that all are relative to, by default that at rest; ``noise``, in
     it, is the standard deviation of a white noise on the measured cambers. A failing plant or
     law ends the run, which keeps what was computed. Raises `Absent` for a plant without mean
-    camber.
+    camber, `BadInput` for a passive one of zero.
     """
     generator = np.random.default_rng(seed)
     state, outputs, rows, failure = rest, plant.observe(rest), [], ''
     if outputs.camber_mean is None:
         raise Absent('a trial is judged by the mean camber: the plant does not have it')
-    v_squared, memory, passive = outputs.v_squared, None, passive or outputs.camber_mean
+    v_squared, memory = outputs.v_squared, None
+    passive = require_reference(
+        'camber_mean', outputs.camber_mean if passive is None else passive, None)
     if controller is not None:
         memory = controller.start(v_squared)
     for _ in range(steps):

@@ -24,7 +24,7 @@ def on_wing(settings: ControllerSettings, built: Built, model: Design, duration:
     """Return run and figures of the law on the wing ``built``."""
     run = trial.run(built.plant, built.rest, controller(settings, built.identity, model),
                     round(duration / built.plant.dt),
-                    passive=built.identity.camber_mean)
+                    passive=built.identity.passive('camber_mean'))
     figures = trial.figures(run, settings.reference.target, built.identity.v_squared_max,
                             max(duration - AVERAGED, 0.5 * duration))
     return run, figures

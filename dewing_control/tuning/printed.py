@@ -11,9 +11,10 @@ from dewing_sim.identity import Identity
 def printed_gains(identity: Identity) -> dict[str, float]:
     """Return the paper's gains on eq. 10, read as V^2 per metre of camber, normalised.
 
+    They act on the magnitude of the camber, so that the mirror image of a wing has the same.
     Ki = 2.3e15 V^2/s, Kp = 4.0e11 V^2 and Kd = 7.5e5 V^2 s; the paper prints no filter.
     """
-    scale = identity.camber_mean / identity.v_squared_slack
+    scale = abs(identity.passive('camber_mean')) / identity.v_squared_slack
     return {'kp': 4.0e11 * scale, 'ki': 2.3e15 * scale, 'kd': 7.5e5 * scale,
             'derivative_filter': 0.0}
 

@@ -28,7 +28,10 @@ def settled(case: Case, membrane, scales: Scales, disturbed: bool) -> Case:
 
 
 def expected_camber(case: Case, membrane) -> float:
-    """Return the camber (chords) at the largest voltage under the lift of thin aerofoils."""
+    """Return the camber (chords) at the largest voltage under the lift of thin aerofoils.
+
+    It is that of the mirror image too: the camber has the sign of the lift that makes it.
+    """
     camber = 0.0
     for _ in range(PASSES):
         jump = starting_circulation(case.flow.angle_of_attack, camber)      # Cl / 2
@@ -36,5 +39,5 @@ def expected_camber(case: Case, membrane) -> float:
             position = membrane.equilibrium(jump, case.actuation.voltage_limit**2)
         except RunFailed:
             return math.inf
-        camber = float(np.ptp(membrane.surface(position)[:, 1]))
-    return camber
+        camber = math.copysign(float(np.ptp(membrane.surface(position)[:, 1])), jump)
+    return abs(camber)

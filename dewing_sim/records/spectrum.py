@@ -5,6 +5,7 @@
 import numpy as np
 
 STEADY = 1.0e-4     # a relative range below which the lines are those of rounding and iteration
+LEAST = 0.1         # of its scale: a range is compared with no smaller signal
 SHEDDING = 5.0e-3   # of the mean lift: swings below it are no vortex shedding
 
 
@@ -18,16 +19,18 @@ def power_spectrum(signal: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarra
     return periodogram(signal, 1.0 / dt, 'hann', detrend='constant', scaling='spectrum')
 
 
-def peaks(signal: np.ndarray, dt: float, most: int = 5, floor: float = 1.0e-3) -> list[float]:
+def peaks(signal: np.ndarray, dt: float, most: int = 5, floor: float = 1.0e-3,
+          scale: float = 0.0) -> list[float]:
     """Return the frequencies (Hz) of the strongest lines of ``signal``, strongest first.
 
     Lines weaker than ``floor`` times the strongest are left out, as is a signal that is shorter
-    than 8 samples or whose range is below `STEADY` of its largest value. A parabola through the
-    logarithm of three neighbouring powers places a line between the bins.
+    than 8 samples or whose range is below `STEADY` of its largest value, or of `LEAST` times the
+    ``scale`` of such signals if that is more. A parabola through the logarithm of three
+    neighbouring powers places a line between the bins.
     """
     from scipy.signal import find_peaks
     signal = np.asarray(signal, dtype=float)
-    if len(signal) < 8 or np.ptp(signal) <= STEADY * np.abs(signal).max():
+    if len(signal) < 8 or np.ptp(signal) <= STEADY * max(np.abs(signal).max(), LEAST * scale):
         return []
     frequency, power = power_spectrum(signal, dt)
     found, _ = find_peaks(power, height=floor * power.max())

@@ -23,6 +23,7 @@ from dewing_sim.wing import Wing
 
 LOOK, AVERAGE = 1.0, 10.0           # c/U; a shedding cycle takes about 1.7
 STEADY = 0.02                       # largest swing of a steady camber, relative
+LEAST = 1.0e-3                      # of y_ref: a swing is compared with no smaller camber
 SAMPLE = 5                          # steps
 
 
@@ -45,7 +46,8 @@ def measure(wing: Wing, rest: State, progress=None) -> tuple[float, float]:
     if wing.case.numerics.trim_time <= QUASI_STEADY:
         return begin
     glance, state = _march(wing, rest, LOOK)
-    swing = np.ptp([begin, *glance], axis=0) / begin
+    size = np.maximum(np.abs(begin), LEAST * wing.reference_deflection)
+    swing = np.ptp([begin, *glance], axis=0) / size
     if swing.max() < STEADY:
         return begin
     later, _ = _march(wing, state, AVERAGE - LOOK, progress)

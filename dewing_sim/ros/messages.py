@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Outputs, commands and parameters to ROS messages and back: pure functions.
 
-Frames: ``wing`` has x along the chord from the leading edge and y towards the suction side,
+Frames: ``wing`` has x along the chord from the leading edge and y towards the upper side,
 ``wind`` has x along the free stream and y along the lift; z follows from the right-hand rule.
 """
 

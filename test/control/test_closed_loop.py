@@ -71,8 +71,10 @@ def test_two_runs_agree_bit_for_bit():
 def test_identity_survives_yaml_and_refuses_nonsense():
     identity = identity_of(first_mode())
     assert Identity.from_yaml(identity.to_yaml()) == identity
-    with pytest.raises(BadInput, match='camber_mean = 0.0 is not a positive number'):
-        Identity.from_yaml(identity.to_yaml().replace(repr(CAMBER), '0.0'))
+    with pytest.raises(BadInput, match='camber_mean = nan is not a finite number'):
+        Identity.from_yaml(identity.to_yaml().replace(repr(CAMBER), '.nan'))
+    with pytest.raises(BadInput, match='dt = 0.0 is not a positive number'):
+        Identity.from_yaml(identity.to_yaml().replace(f'dt: {identity.dt!r}', 'dt: 0.0'))
     with pytest.raises(BadInput, match='not the identity of a plant'):
         Identity.from_yaml('just: words')
 

@@ -62,7 +62,7 @@ class Controlled:
         steps = round(self.duration / built.plant.dt)
         run = trial.run(Watched(built.plant, steps, tick), built.rest,
                         controller(settings, identity, model) if settings else None,
-                        steps, passive=identity.camber_mean)
+                        steps, passive=identity.passive('camber_mean'))
         target = settings.reference.target if settings else 1.0
         values = trial.figures(run, target, _limit(case, settings),
                                self.duration - self.averaged)
