@@ -15,7 +15,8 @@ from dewing_sim.errors import BadInput, Slack
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.identity import Identity
 from dewing_sim.inputs.base import Inputs
-from dewing_sim.machine.jobs import HERE, Failed, Job, Workers, results
+from dewing_sim.machine.job import Failed, Job
+from dewing_sim.machine.jobs import HERE, Workers, results
 from dewing_sim.plant import Outputs, Plant
 from dewing_sim.quantities import Absent
 

@@ -20,6 +20,7 @@ from dewing_sim.errors import BadInput, DewingError
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine import jobs
 from dewing_sim.machine.fingerprint import fingerprint
+from dewing_sim.machine.job import Failed, Job
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import schema
@@ -133,12 +134,12 @@ def run_points(sweep: Sweep, points: Sequence[Point], workers: jobs.Workers,
     A point whose process is killed, or that raises what no solver raises on purpose, is `LOST`.
     Raises `BadInput` if no scheduler answers.
     """
-    planned = {point.index: jobs.Job(partial(run_point, point.case, sweep.duration, sweep.skip))
+    planned = {point.index: Job(partial(run_point, point.case, sweep.duration, sweep.skip))
                for point in points}
     by_index = {point.index: point for point in points}
     for batch in jobs.run(planned, workers):
         yield [(by_index[index], Result(LOST, outcome.reason, {})
-                if isinstance(outcome, jobs.Failed) else outcome) for index, outcome in batch]
+                if isinstance(outcome, Failed) else outcome) for index, outcome in batch]
 
 
 def _simulate(case: Case, duration: float, skip: float) -> dict[str, float]:

@@ -21,7 +21,8 @@ from dewing_sim import parameters
 from dewing_sim.build import Built, build_wing
 from dewing_sim.identity import Identity
 from dewing_sim.inputs.disturbance import wall_pressure
-from dewing_sim.machine.jobs import HERE, Failed, Job, Workers
+from dewing_sim.machine.job import Failed, Job
+from dewing_sim.machine.jobs import HERE, Workers
 from dewing_sim.machine.jobs import results as results_of
 from dewing_sim.parameters import Case
 from dewing_sim.wing import Wing

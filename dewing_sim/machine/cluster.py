@@ -10,7 +10,7 @@ import warnings
 from typing import Any, Mapping
 
 from dewing_sim.errors import BadInput
-from dewing_sim.machine.jobs import Failed, Job, execute
+from dewing_sim.machine.job import Failed, Job, execute
 
 ANSWER, MUSTER = 10.0, 5.0          # s until a scheduler answers, until it has workers
 MISSING = "--scheduler needs dask.distributed: pip install 'dewing[sweep]'"
@@ -18,7 +18,7 @@ UNLIMITED = 1_000_000
 
 
 class Cluster:
-    """A `jobs.Backend`: a client of the scheduler at ``address``."""
+    """A `job.Backend`: a client of the scheduler at ``address``."""
 
     def __init__(self, address: str):
         """Connect; raise `BadInput` if no scheduler answers, warn if it has no workers."""

@@ -10,44 +10,13 @@ Ctrl-C, jobs that have not started are cancelled and those that run are ended.
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Callable, Hashable, Iterator, Mapping, Protocol, TypeVar
+from typing import Any, Callable, Hashable, Iterator, Mapping, TypeVar
 
-from dewing_sim.errors import DewingError, RunFailed
+from dewing_sim.errors import RunFailed
+from dewing_sim.machine.job import Backend, Failed, Job
 
 GLANCE = 0.3                # s between two looks at the progress
-SINGLE_THREAD = ('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS',
-                 'NUMBA_NUM_THREADS')
-Tick = Callable[[float], None]          # hears the finished share of a job, 0 to 1
 Name = TypeVar('Name', bound=Hashable)
-
-
-@dataclass(frozen=True)
-class Job:
-    """``call()`` in a process of its own, or ``call(tick, inputs)`` if ``linked``.
-
-    ``inputs`` holds the results of the jobs named in ``needs``; ``call`` and results must pickle.
-    """
-
-    call: Callable
-    needs: tuple = ()
-    cost: float = 1.0                   # expected time in arbitrary units
-    linked: bool = False
-
-
-@dataclass(frozen=True)
-class Failed:
-    """Why there is no result. What is ``lost`` has neither a result nor a reason of our own."""
-
-    error: BaseException
-    lost: bool = False
-
-    def __str__(self) -> str:
-        return ' '.join(str(self.error).split())
-
-    @property
-    def reason(self) -> str:
-        """Return kind and message of the error."""
-        return f'{type(self.error).__name__}: {self}'
 
 
 @dataclass(frozen=True)
@@ -57,7 +26,7 @@ class Workers:
     jobs: int = 2
     scheduler: str | None = None
 
-    def open(self, jobs: int) -> 'Backend':
+    def open(self, jobs: int) -> Backend:
         """Return a backend for ``jobs`` jobs; raise `BadInput` if the cluster does not answer."""
         if self.scheduler is None:
             from dewing_sim.machine.processes import Processes
@@ -67,25 +36,6 @@ class Workers:
 
 
 HERE = Workers(1)
-
-
-class Backend(Protocol):
-    """Where jobs run; they are numbered."""
-
-    def room(self) -> int:
-        """Return how many jobs may be submitted at present."""
-
-    def submit(self, number: int, job: Job, inputs: Mapping) -> None:
-        """Start a job, or as soon as there is a free process."""
-
-    def finished(self, timeout: float) -> list[tuple[int, Any]]:
-        """Return numbers and outcomes of what has finished, after ``timeout`` s at the latest."""
-
-    def share(self, number: int) -> float:
-        """Return the finished share of a running job."""
-
-    def close(self, finished: bool) -> None:
-        """End all processes, or forget all jobs; they are in the midst unless ``finished``."""
 
 
 @dataclass
@@ -199,14 +149,6 @@ def found(name: Any, outcome: Any) -> Any:
             raise RunFailed(f'{name}: {outcome}')
         raise outcome.error
     return outcome
-
-
-def execute(job: Job, inputs: Mapping, tick: Tick = lambda share: None) -> Any:
-    """Return the outcome of a job in this process; what is no error of ours is raised."""
-    try:
-        return job.call(tick, inputs) if job.linked else job.call()
-    except DewingError as error:
-        return Failed(error)
 
 
 def cores() -> int:

@@ -20,7 +20,7 @@ from multiprocessing.sharedctypes import RawArray
 from typing import Any, Mapping
 
 from dewing_sim.errors import RunFailed
-from dewing_sim.machine.jobs import SINGLE_THREAD, Failed, Job, execute
+from dewing_sim.machine.job import SINGLE_THREAD, Failed, Job, execute
 from dewing_sim.machine.signals import ENDS
 
 CHANCES = 2                 # alone
@@ -52,7 +52,7 @@ def _call(number: int, pickled: bytes) -> Any:
 
 
 class Processes:
-    """A `jobs.Backend`: a pool that is begun anew when one of its processes is killed."""
+    """A `job.Backend`: a pool that is begun anew when one of its processes is killed."""
 
     def __init__(self, processes: int, jobs: int):
         """Take up to ``processes`` of ``jobs`` jobs at a time."""

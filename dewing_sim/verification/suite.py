@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
 from dewing_sim.errors import DewingError
-from dewing_sim.machine.jobs import Failed, Job, Workers, idle_cores, results
+from dewing_sim.machine.job import Failed, Job
+from dewing_sim.machine.jobs import Workers, idle_cores, results
 from dewing_sim.verification.fluid import (
     added_mass,
     camber,

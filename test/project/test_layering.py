@@ -3,6 +3,7 @@
 """Who may import whom, read from the import statements: one chain, and ROS at the rim only."""
 
 import ast
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -84,6 +85,22 @@ def test_physics_gets_its_own_parameters_never_the_whole_case(side):
         if path.parts[:2] == ('dewing_sim', side):
             assert 'dewing_sim.parameters.Case' not in imported(path), path
             assert 'parameters.Case' not in (PROJECT / path).read_text(), path
+
+
+def modules() -> dict[str, Path]:
+    """Return the files of all modules by dotted name."""
+    return {'.'.join(path.with_suffix('').parts).removesuffix('.__init__'): path
+            for path in FILES}
+
+
+def test_no_module_imports_itself_through_others():
+    """Imports inside functions count: they would only hide a circle."""
+    known = modules()
+    graph = {name: {found for found in (
+        part if part in known else part.rpartition('.')[0] for part in imported(path))
+        if found in known and found != name} for name, path in known.items()}
+    assert len(graph) > 150 and graph['dewing_sim.wing'] > {'dewing_sim.rest.trim'}
+    assert len(list(TopologicalSorter(graph).static_order())) == len(known)
 
 
 def test_the_reader_of_imports_sees_every_form(tmp_path):

@@ -13,7 +13,7 @@ import numpy as np
 from dewing_sim.errors import BadInput
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.machine import fingerprint as machine
-from dewing_sim.machine.jobs import Tick
+from dewing_sim.machine.job import Tick
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from typing import Callable, Mapping
 
 from dewing_cli.paper.runs.result import Result, Run
 from dewing_sim.machine import jobs
+from dewing_sim.machine.job import Failed, Job
 
 
 @dataclass(frozen=True)
@@ -27,10 +28,10 @@ def execute(runs: Mapping[str, Run], known: Mapping[str, Result], workers: jobs.
     `RunFailed` if the process of a run is killed again and again.
     """
     results: dict[str, Result | Failure] = dict(known)
-    planned = {name: jobs.Job(run, run.needs, run.cost, linked=True) for name, run in runs.items()}
+    planned = {name: Job(run, run.needs, run.cost, linked=True) for name, run in runs.items()}
     for batch in jobs.run(planned, workers, known, progress):
         for name, outcome in batch:
-            if isinstance(jobs.found(name, outcome), jobs.Failed):
+            if isinstance(jobs.found(name, outcome), Failed):
                 results[name] = Failure(str(outcome.error))
             else:
                 results[name] = outcome

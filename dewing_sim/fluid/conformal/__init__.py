@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vorticity on a conformal map that follows the membrane."""
 
-from dewing_sim.fluid.conformal.presets import PRESETS
+from dewing_sim.fluid.conformal.presets import NAME, PRESETS
 
-NAME = 'conformal'
+__all__ = ['GRIDS', 'NAME', 'load']
+
 GRIDS = tuple(PRESETS)
 
 

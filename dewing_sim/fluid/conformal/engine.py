@@ -16,13 +16,13 @@ import numpy as np
 
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.fluid.base import INFLOWS, Demand, Fluid, Loads, Monitor, Prediction, Wall
-from dewing_sim.fluid.conformal import NAME, diagnostics, noslip, step
+from dewing_sim.fluid.conformal import diagnostics, noslip, step
 from dewing_sim.fluid.conformal.geometry.frame import Frame
 from dewing_sim.fluid.conformal.geometry.mapping import Map
 from dewing_sim.fluid.conformal.geometry.wall import Geometry, WallGeometry
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.noslip import EdgeTable
-from dewing_sim.fluid.conformal.presets import PRESETS
+from dewing_sim.fluid.conformal.presets import NAME, PRESETS
 from dewing_sim.fluid.conformal.pressure import added_mass, force
 from dewing_sim.fluid.field import FlowField
 from dewing_sim.fluid.inflow import Inflow

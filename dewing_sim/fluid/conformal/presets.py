@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from dewing_sim.fluid.preset import GridPreset
 
+NAME = 'conformal'
+
 
 @dataclass(frozen=True)
 class Preset(GridPreset):

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finite volumes on a membrane-following staggered grid."""
 
-from dewing_sim.fluid.finite_volume.presets import PRESETS
+from dewing_sim.fluid.finite_volume.presets import NAME, PRESETS
 
-NAME = 'finite_volume'
+__all__ = ['GRIDS', 'NAME', 'load']
+
 GRIDS = tuple(PRESETS)
 
 

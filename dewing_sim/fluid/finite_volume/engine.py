@@ -17,12 +17,12 @@ import numpy as np
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.fluid.base import Fluid, Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.field import FlowField
-from dewing_sim.fluid.finite_volume import NAME, mapping, projection, step
+from dewing_sim.fluid.finite_volume import mapping, projection, step
 from dewing_sim.fluid.finite_volume.field import flow_field
 from dewing_sim.fluid.finite_volume.grid import Grid, build
 from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.potential import Potential
-from dewing_sim.fluid.finite_volume.presets import PRESETS
+from dewing_sim.fluid.finite_volume.presets import NAME, PRESETS
 from dewing_sim.fluid.finite_volume.step import FlowState
 from dewing_sim.fluid.inflow import Inflow
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from dewing_sim.fluid.preset import GridPreset
 
+NAME = 'finite_volume'
+
 
 @dataclass(frozen=True)
 class Spacing:

@@ -17,7 +17,8 @@ import pytest
 from dewing_sim.errors import BadInput, RunFailed, Slack
 from dewing_sim.machine import cluster as on_dask
 from dewing_sim.machine import jobs
-from dewing_sim.machine.jobs import Job, Workers
+from dewing_sim.machine.job import Job
+from dewing_sim.machine.jobs import Workers
 
 PATIENCE = 120.0        # s
 
