@@ -204,8 +204,8 @@ class SimulatorNode(Node):
 
     def _values(self) -> dict[str, Any]:
         wall = self._question.asked - self._began if self._started else 0.0
-        return dict(mode=self.run.mode, resent=self._question.resent,
-                    missed_deadlines=self._deadlines.missed, **self.lockstep.figures(wall),
+        return dict(mode=self.run.mode, **self.lockstep.figures(wall),
+                    resent=self._question.resent, missed_deadlines=self._deadlines.missed,
                     **vars(self.built.monitor(self.lockstep.state)))
 
     def pause(self, wanted: bool):

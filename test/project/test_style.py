@@ -16,7 +16,7 @@ FOLDERS = ('config', 'dewing_cli', 'dewing_control', 'dewing_sim', 'dewing_sysid
 PYTHON = sorted(path.relative_to(PROJECT) for folder in FOLDERS
                 for path in (PROJECT / folder).rglob('*.py'))
 MODULES = [path for path in PYTHON if path.parts[0].startswith('dewing_')]
-LONGEST_FILE = 255
+LONGEST_FILE = 250
 LONGEST_FUNCTION = 45
 MOST_ARGUMENTS = 8          # by position
 # Decorators of compiled functions, which take no keywords; a signature names types.

@@ -31,7 +31,7 @@ class Graph:
         self.domain, self.folder, self.processes = domain, folder, []
         folder.mkdir(exist_ok=True)
         self.model = folder / 'model.npz'
-        reduced.save(self.model, first_mode(disturbance=0.05))
+        reduced.save(self.model, first_mode(disturbance=0.05), overwrite=True)
 
     def start(self, name, settings=None, **options):
         log = open(self.folder / f'{name}.txt', 'a')

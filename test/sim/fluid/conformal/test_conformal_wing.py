@@ -48,7 +48,7 @@ def test_a_saved_state_continues_bit_for_bit(paper, tmp_path):
     fresh = Wing(checkpoint.load_case(tmp_path / 'half.npz'))
     state = checkpoint.load(tmp_path / 'half.npz')
     for _ in range(20):
-        state = fresh.step(state, 90000.0)
+        state = fresh.step(state, Inputs(90000.0))
     for name, value in vars(states[-1].flow).items():
         assert np.array_equal(value, getattr(state.flow, name)), name
     assert state.flow.slip > 0.0
