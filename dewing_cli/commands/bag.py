@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Say what a recorded bag holds, or draw it.
 
-``info`` lists topics, messages, the plant and the last words of the nodes; ``plot`` draws camber
-and voltage against simulated time. Bags of ``ros2 bag record`` and of our recorder are read alike,
-also those of a recorder that was killed.
+``info`` lists topics, messages, runs, the plant and the last words of the nodes; ``plot`` draws
+camber and voltage against simulated time. Bags of ``ros2 bag record`` and of our recorder are read
+alike, also those of a recorder that was killed or that are damaged: what is lost is counted.
 """
 
 import argparse
 from pathlib import Path
 
 from dewing_cli import options, results
+from dewing_sim.errors import BadInput
 from dewing_sim.files import check_free
 
 ACTIONS = {'info': None, 'plot': None}
@@ -20,6 +21,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument('action', metavar='ACTION', help=' or '.join(ACTIONS))
     parser.add_argument('file', metavar='FILE', help='MCAP file')
+    parser.add_argument('--run', dest='number', type=int, metavar='N',
+                        help='run to plot, as info numbers them; a reset begins a new one')
     options.add_results(parser, 'PNG to draw into (default: FILE with .png)')
 
 
@@ -28,6 +31,8 @@ def run(arguments: argparse.Namespace) -> None:
     options.one_of('ACTION', arguments.action, ACTIONS)
     if arguments.json:
         check_free(arguments.json, arguments.force)
+    if arguments.action == 'info' and arguments.number is not None:
+        raise BadInput('info lists every run: --run is for plot')
     if arguments.action == 'info':
         _info(arguments)
     else:
@@ -47,7 +52,7 @@ def _plot(arguments: argparse.Namespace) -> None:
     from dewing_sim.records import bag_summary
     out = Path(arguments.out or Path(arguments.file).with_suffix('.png'))
     check_free(out, arguments.force)
-    metrics = bag_summary.draw(arguments.file, out, arguments.force)
+    metrics = bag_summary.draw(arguments.file, out, arguments.force, arguments.number)
     if arguments.json:
         results.write_json(arguments.json, metrics, arguments.force)
     if not arguments.quiet:

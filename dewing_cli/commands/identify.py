@@ -39,6 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                        help='identified outputs (default: camber_mean,camber_max,cl)')
     group.add_argument('--from', dest='source', metavar='FILE',
                        help='identify from recorded experiments, npz or MCAP bag')
+    group.add_argument('--run', dest='number', type=int, metavar='N',
+                       help='run of the bag that is the experiment (default: all, by their V^2)')
     options.add_workers(parser)
     options.add_numerics(parser, 's')
     options.add_results(parser, 'write the model as npz')
@@ -59,7 +61,7 @@ def run(arguments: argparse.Namespace) -> None:
     began = time.perf_counter()
     if arguments.source:
         from dewing_sysid.sources import load
-        records, identity = load(arguments.source)
+        records, identity = load(arguments.source, arguments.number)
         found = identify.identify(records, settings, identity)
     else:
         found, identity, began = _experiment(arguments, settings, case, names)
@@ -92,6 +94,8 @@ def _check(arguments: argparse.Namespace) -> tuple[Settings, Case]:
             changes[key] = value
     settings = parameters.load(arguments.settings, Settings, changes)
     options.workers(arguments)
+    if arguments.number is not None and not arguments.source:
+        raise BadInput('--run picks a run of a bag: --from names it')
     if arguments.source and arguments.outputs:
         raise BadInput('--outputs cannot change what was recorded: leave out --outputs or --from')
     for path in filter(None, (arguments.out, arguments.mat, arguments.json,

@@ -7,7 +7,7 @@ leaves a file that `read` (and ``mcap recover``) can use up to the last chunk.
 """
 
 import functools
-import struct
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,8 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import yaml
 
-from dewing_sim.errors import BadInput
 from dewing_sim.files import check_free
+from dewing_sim.records.mcap_file import Losses, messages
+from dewing_sim.records.runs import Run, choose, split
 
 CHUNK = 64 * 1024           # bytes
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
@@ -88,56 +89,75 @@ class Recorded(NamedTuple):
     message: Any
 
 
-def read(path: str | Path, topic: str | None = None) -> Iterator[Recorded]:
-    """Yield the messages of ``topic`` (default: all) in the order of their arrival.
+def read(path: str | Path, *topics: str, losses: Losses | None = None) -> Iterator[Recorded]:
+    """Yield the messages of ``topics`` (default: all) in the order of their arrival.
 
-    The file need not have been closed. Raises `BadInput` if it is not a bag.
+    The file need not have been closed. What cannot be read or decoded is counted in ``losses``;
+    without it every kind of loss is one warning at the end. Raises `BadInput` if the file is not
+    a bag.
     """
-    from mcap.records import Channel, Message, Schema
-    schemas, channels = {}, {}
-    for record in _records(path):
-        if isinstance(record, Schema):
-            schemas[record.id] = record.name
-        elif isinstance(record, Channel):
-            channels[record.id] = record
-        elif isinstance(record, Message):
-            channel = channels[record.channel_id]
-            if topic in (None, channel.topic):
-                kind = schemas[channel.schema_id]
-                yield Recorded(channel.topic, record.log_time,
-                               _types().deserialize_cdr(record.data, kind))
+    found = Losses() if losses is None else losses
+    for channel, schema, record in messages(path, found, topics):
+        try:
+            message = _decoded(channel, schema, record.data)
+        except _Undecodable as reason:
+            found.messages[channel.topic, str(reason)] += 1
+            found.kinds[channel.topic] = schema.name if schema else channel.message_encoding
+        else:
+            yield Recorded(channel.topic, record.log_time, message)
+    if losses is None:
+        for sentence in found.sentences():
+            warnings.warn(f'{path}: {sentence}', RuntimeWarning, stacklevel=2)
 
 
-def _records(path: str | Path) -> Iterator[Any]:
-    """Yield records up to the end, or to where a killed writer left off."""
-    from mcap.exceptions import EndOfFile, InvalidMagic, McapError
-    from mcap.stream_reader import StreamReader
+class _Undecodable(Exception):
+    """Says why, as the rest of a sentence that begins with the messages."""
+
+
+def _decoded(channel: Any, schema: Any, data: bytes) -> Any:
+    if schema is None:
+        raise _Undecodable(f'have no schema ({channel.message_encoding or "no encoding"})')
+    if channel.message_encoding != 'cdr':
+        raise _Undecodable(f'are encoded as {channel.message_encoding or "nothing known"}, '
+                           'not as cdr')
+    types = _types() if is_known(schema.name) else _embedded(
+        schema.name, schema.encoding, schema.data)
+    if types is None:
+        raise _Undecodable(f'are of the type {schema.name}, which is neither known nor defined '
+                           'in the file')
     try:
-        with open(path, 'rb') as file:
-            yield from StreamReader(file).records
-    except (EndOfFile, struct.error):       # mcap has no word of its own for half a record
-        return
-    except OSError as error:
-        raise BadInput(f'{path}: cannot be read ({error.strerror})') from None
-    except InvalidMagic:
-        raise BadInput(f'{path}: not an MCAP file') from None
-    except McapError as error:
-        raise BadInput(f'{path}: damaged ({error})') from None
+        return types.deserialize_cdr(data, schema.name)
+    except Exception:               # rosbags raises whatever wrong bytes provoke
+        raise _Undecodable(f'do not fit their type, {schema.name}') from None
 
 
-def series(path: str | Path, topic: str) -> dict[str, np.ndarray]:
+@functools.cache
+def _embedded(name: str, encoding: str, definition: bytes) -> Any:
+    """Return a store of types that knows ``name`` by the definition in the file, or None."""
+    from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+    types = get_typestore(Stores.ROS2_JAZZY)
+    try:
+        text = definition.decode()
+        types.register(get_types_from_idl(text) if encoding == 'ros2idl'
+                       else get_types_from_msg(text, name))
+    except Exception:               # as above
+        return None
+    return types if name in types.fielddefs and text.strip() else None
+
+
+def runs(path: str | Path, topic: str) -> list[Run]:
+    """Return the runs of a JointState topic: one begins wherever its stamps start again."""
+    losses = Losses()
+    found = split(read(path, topic, losses=losses), losses)
+    for sentence in losses.sentences():
+        warnings.warn(f'{path}: {sentence}', RuntimeWarning, stacklevel=3)
+    return found
+
+
+def series(path: str | Path, topic: str, run: int | None = None) -> dict[str, np.ndarray]:
     """Return ``time`` (s, from the stamps) and every named quantity of a JointState topic.
 
-    All have shape (messages,); repeated stamps count once, the first.
+    All have shape (messages,); repeated stamps count once, the first. ``run`` counts from 1; it
+    must be given if the bag holds several. Raises `BadInput` if there is no such run.
     """
-    stamps, rows, names = [], [], ()
-    for _, _, message in read(path, topic):
-        stamp = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
-        if not stamps or stamp > stamps[-1]:
-            names = tuple(message.name)
-            stamps.append(stamp)
-            rows.append(message.position if len(message.position) else message.effort)
-    if not stamps:
-        raise BadInput(f'{path}: no messages on {topic}')
-    columns = np.array(rows, float).T
-    return {'time': np.array(stamps) * 1.0e-9, **dict(zip(names, columns))}
+    return choose(runs(path, topic), run, path, topic).series()
