@@ -4,6 +4,7 @@
 
 import argparse
 import math
+from pathlib import Path
 from typing import Any, Callable
 
 from dewing_sim import parameters
@@ -87,6 +88,11 @@ def load_case(arguments: argparse.Namespace) -> Case:
     if arguments.disturbance is not None:
         changes |= one_of('--disturbance', arguments.disturbance, DISTURBANCES)
     return parameters.load(arguments.case, Case, changes)
+
+
+def read_files(*names: str | None) -> list[Path]:
+    """Return the files behind the ``names`` of configurations, shipped or not; None is none."""
+    return [parameters.config_file(name) for name in names if name is not None]
 
 
 def one_of(option: str, name: str, table: dict) -> Any:

@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Result files: never half written, never written over another unasked, read with one sentence."""
 
+import io
 import os
+import re
+import stat
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,29 +21,95 @@ def check_free(path: str | Path, overwrite: bool = False,
                way_out: str = '--force writes over it') -> Path:
     """Return ``path`` if a file may be written there; raise `BadInput` otherwise.
 
-    ``way_out`` is what who may not overwrite can do about it.
+    ``way_out`` is what who may not overwrite can do about it. A symbolic link stands for what it
+    leads to, and a stream, see `is_stream`, is always free.
 
     Commands call it before a long computation, so that the result is not lost at its end.
     """
     path = Path(path)
-    if path.is_dir():
-        raise BadInput(f'{path} is a folder, not a file')
-    if path.exists() and not overwrite:
-        raise BadInput(f'{path} exists; {way_out}')
-    folder = path.parent
-    while not folder.exists():
-        folder = folder.parent
-    if not folder.is_dir() or not os.access(folder, os.W_OK):
-        raise BadInput(f'{path}: {folder} is not a folder that can be written to')
+    try:
+        if not is_stream(path):
+            _check_file(path, overwrite, way_out)
+        elif not os.access(path, os.W_OK):
+            raise BadInput(f'{path} cannot be written to')
+    except OSError as error:
+        raise BadInput(f'{path} cannot be written ({error.strerror})') from None
     return path
+
+
+def _check_file(path: Path, overwrite: bool, way_out: str) -> None:
+    target = target_of(path)
+    _check_lengths(path, target)
+    if target.is_symlink():
+        raise BadInput(f'{path} is a link that leads in circles')
+    if target.is_dir():
+        raise BadInput(f'{path} is a folder, not a file')
+    if target.exists():
+        if not target.is_file():
+            raise BadInput(f'{path} is neither a file nor a stream')
+        if not overwrite:
+            raise BadInput(f'{path} exists; {way_out}')
+    folder = _nearest_folder(target)
+    try:
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        raise BadInput(f'{path}: {folder} is not a folder that can be written to') from None
+
+
+def _check_lengths(path: Path, target: Path) -> None:
+    most = os.pathconf(_nearest_folder(target), 'PC_NAME_MAX')
+    for name in target.parts:
+        if len(os.fsencode(name)) > most:
+            raise BadInput(f'{path}: a name of {len(os.fsencode(name))} bytes is too long: '
+                           f'at most {most}')
+
+
+def _nearest_folder(target: Path) -> Path:
+    """Return the parent, or the nearest folder above it that is there."""
+    folder = target.parent
+    while not os.path.lexists(folder):
+        folder = folder.parent
+    return folder
+
+
+def target_of(path: str | Path) -> Path:
+    """Return where ``path`` leads to over symbolic links, whether or not a file is there."""
+    return Path(os.path.realpath(path))
+
+
+def is_stream(path: str | Path) -> bool:
+    """Return whether what is written to ``path`` goes elsewhere at once.
+
+    So it is with character devices and pipes, and with open files that go by their descriptor,
+    such as ``/dev/stdout``.
+    """
+    try:
+        mode = os.stat(path).st_mode
+    except OSError:
+        return False
+    if stat.S_ISREG(mode):
+        return _DESCRIPTOR.fullmatch(os.path.abspath(path)) is not None
+    return stat.S_ISCHR(mode) or stat.S_ISFIFO(mode)
+
+
+_DESCRIPTOR = re.compile(r'/dev/(stdout|stderr|fd/\d+)|/proc/[^/]+/fd/\d+')
 
 
 @contextmanager
 def new_file(path: str | Path, overwrite: bool = False) -> Iterator[BinaryIO]:
-    """Open a binary file that appears at ``path``, with its folders, once it is complete."""
-    path = check_free(path, overwrite)
+    """Open a binary file that appears at ``path``, with its folders, once it is complete.
+
+    Where ``path`` is a stream, see `is_stream`, the whole is written to it then.
+    """
+    if is_stream(check_free(path, overwrite)):
+        whole = io.BytesIO()
+        yield whole
+        with open(path, 'ab') as stream:
+            stream.write(whole.getvalue())
+        return
+    path = target_of(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f'.{path.name}.')
+    descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix='.dewing.')
     try:
         with os.fdopen(descriptor, 'wb') as file:
             yield file

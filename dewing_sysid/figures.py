@@ -12,6 +12,8 @@ from dewing_sysid.experiment import Record
 from dewing_sysid.identify import Identification
 from dewing_sysid.plan import EXPERIMENT, FRESH, SWEEP
 
+FILES = tuple(f'{name}.png' for name in (
+    'response', 'singular_values', 'bode', 'poles', 'fresh'))
 DRAWN_VALUES = 60                       # singular values shown
 
 

@@ -10,9 +10,8 @@ alike, also those of a recorder that was killed or that are damaged: what is los
 import argparse
 from pathlib import Path
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_sim.errors import BadInput
-from dewing_sim.files import check_free
 
 ACTIONS = {'info': None, 'plot': None}
 
@@ -29,14 +28,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Describe or draw the bag."""
     options.one_of('ACTION', arguments.action, ACTIONS)
-    if arguments.json:
-        check_free(arguments.json, arguments.force)
     if arguments.action == 'info' and arguments.number is not None:
         raise BadInput('info lists every run: --run is for plot')
+    out = None
+    if arguments.action == 'plot':
+        out = Path(arguments.out or Path(arguments.file).with_suffix('.png'))
+    outputs.claim({'--json': arguments.json, '--out': out}, arguments.force, [arguments.file])
     if arguments.action == 'info':
         _info(arguments)
     else:
-        _plot(arguments)
+        _plot(arguments, out)
 
 
 def _info(arguments: argparse.Namespace) -> None:
@@ -48,10 +49,8 @@ def _info(arguments: argparse.Namespace) -> None:
         print('\n'.join(bag_summary.lines(summary)))
 
 
-def _plot(arguments: argparse.Namespace) -> None:
+def _plot(arguments: argparse.Namespace, out: Path) -> None:
     from dewing_sim.records import bag_summary
-    out = Path(arguments.out or Path(arguments.file).with_suffix('.png'))
-    check_free(out, arguments.force)
     metrics = bag_summary.draw(arguments.file, out, arguments.force, arguments.number)
     if arguments.json:
         results.write_json(arguments.json, metrics, arguments.force)

@@ -11,10 +11,9 @@ to copy the arrays of one step, nine read and five written.
 import argparse
 from typing import Any, Callable
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import Laps
 from dewing_sim import parameters
-from dewing_sim.files import check_free
 from dewing_sim.fluid import engines
 
 BLOCK = 20
@@ -38,8 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Time the presets, print and write what was found."""
     options.within('--steps', arguments.steps, BLOCK, 10**6, 'steps')
-    if arguments.json:
-        check_free(arguments.json, arguments.force)
+    outputs.claim({'--json': arguments.json}, arguments.force)
     changes = dict(map(parameters.parse_assignment, arguments.set))
     presets = {}
     for preset in chosen_presets(arguments):

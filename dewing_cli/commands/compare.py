@@ -11,11 +11,12 @@ import argparse
 import json
 from typing import Any
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
 from dewing_sim.errors import BadInput
-from dewing_sim.files import check_free, new_file
+from dewing_sim.files import new_file
 
+MODEL = 'model.npz'     # identified on the way, if none is given
 AVERAGED = 0.2          # s at the end: whole periods of 5, 10, 20 and 40 Hz
 SHOWN = ('camber_mean', 'camber_amplitude', 'error_rms', 'v_max', 'v_rms', 'saturation_share',
          'power_w', 'power_without_recovery_w', 'cl_mean', 'compute_ms')
@@ -53,9 +54,8 @@ def run(arguments: argparse.Namespace) -> None:
         '--duration', arguments.duration, 0.02, 100.0, 's')
     workers = options.workers(arguments)
     folder = Path(arguments.out)
-    for path in filter(None, (folder / 'metrics.json', folder / 'table.md',
-                              folder / 'compare.png', folder / 'model.npz', arguments.json)):
-        check_free(path, arguments.force)
+    files = ['metrics.json', 'table.md', 'compare.png', *([] if arguments.model else [MODEL])]
+    outputs.claim(outputs.within(folder, files) | {'--json': arguments.json}, arguments.force)
     with bar('comparing', 'scenarios', arguments.quiet) as show:
         plan = _plan(arguments, settings, folder, duration)
         collected = _collect(plan, scenarios, names, workers, show)
@@ -91,7 +91,7 @@ def _plan(arguments: argparse.Namespace, settings: Any, folder: Any, duration: f
     built = build_wing(case)
     model = arguments.model
     if model is None:
-        model = str(folder / 'model.npz')
+        model = str(folder / MODEL)
         identify(built).save(model, arguments.force)
     settings = parameters.replace(settings, {'model': model})
     return Plan(case, settings, built.identity, duration,

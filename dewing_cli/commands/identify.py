@@ -13,11 +13,10 @@ import time
 import warnings
 from typing import Any
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
-from dewing_sim.files import check_free
 from dewing_sim.parameters import Case
 from dewing_sysid.settings import Settings
 
@@ -98,10 +97,15 @@ def _check(arguments: argparse.Namespace) -> tuple[Settings, Case]:
         raise BadInput('--run picks a run of a bag: --from names it')
     if arguments.source and arguments.outputs:
         raise BadInput('--outputs cannot change what was recorded: leave out --outputs or --from')
-    for path in filter(None, (arguments.out, arguments.mat, arguments.json,
-                              arguments.records)):
-        check_free(path, arguments.force)
+    _claim(arguments)
     return settings, case
+
+
+def _claim(arguments: argparse.Namespace) -> None:
+    from dewing_sysid import figures
+    files = {f'--{name}': getattr(arguments, name) for name in ('out', 'mat', 'json', 'records')}
+    outputs.claim(files | outputs.within(arguments.figures, figures.FILES), arguments.force,
+                  [arguments.source])
 
 
 def _convective_times(duration: float | None, case: Case) -> float | None:

@@ -12,9 +12,8 @@ per cent of the membrane's: about three minutes on one core.
 
 import argparse
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
-from dewing_sim.files import check_free
 from dewing_sim.parameters import Case
 
 VOLTAGES = [0.0, 400.0, 800.0]
@@ -37,8 +36,6 @@ def run(arguments: argparse.Namespace) -> None:
     """Compute the curves or the comparison, print the metrics and write what was asked for."""
     options.within('--lift', arguments.lift, 0.0, 5.0, '(lift coefficient)')
     case = options.load_case(arguments)
-    if arguments.json:
-        check_free(arguments.json, arguments.force)
     if arguments.coupled:
         compare(arguments, case)
     else:
@@ -48,9 +45,8 @@ def run(arguments: argparse.Namespace) -> None:
 def show(arguments: argparse.Namespace, case: Case) -> None:
     """Compute, draw and deliver the curves."""
     from dewing_cli.figures import material as material_figures
-    if arguments.out:
-        for name in material_figures.DRAWINGS:
-            check_free(f'{arguments.out}/{name}.png', arguments.force)
+    figures = outputs.within(arguments.out, [f'{name}.png' for name in material_figures.DRAWINGS])
+    outputs.claim(figures | {'--json': arguments.json}, arguments.force)
 
     from dewing_sim.structure.material import curves
     pressure = arguments.lift * case.flow.dynamic_pressure
@@ -62,6 +58,7 @@ def show(arguments: argparse.Namespace, case: Case) -> None:
 
 def compare(arguments: argparse.Namespace, case: Case) -> None:
     """Compare the elements in the coupled wing and deliver one row a support and voltage."""
+    outputs.claim({'--json': arguments.json}, arguments.force)
     voltages = arguments.voltages or VOLTAGES
     for voltage in voltages:
         options.within('--voltages', voltage, 0.0, case.actuation.voltage_limit, 'V')

@@ -13,9 +13,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
-from dewing_sim.files import check_free, new_file
+from dewing_sim.files import new_file
 from dewing_sim.fluid import engines
 from dewing_sim.machine.signals import undisturbed
 
@@ -42,8 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
     options.one_of('--engine', engine, dict.fromkeys(engines.NAMES))
     workers = options.workers(arguments)
     folder = Path(arguments.out)
-    for path in filter(None, (folder / REPORT, folder / NUMBERS, arguments.json)):
-        check_free(path, arguments.force)
+    outputs.claim(outputs.within(folder, (REPORT, NUMBERS)) | {'--json': arguments.json},
+                  arguments.force)
     plan = make(engine, arguments.quick)
     found, seconds = compute(plan, folder, workers, arguments.quiet)
     record = write(plan, found, folder, seconds)

@@ -11,9 +11,9 @@ import math
 from pathlib import Path
 from typing import Any
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import Laps, bar, until_interrupted
-from dewing_sim.files import check_free, new_file
+from dewing_sim.files import new_file
 from dewing_sim.fluid import engines
 from dewing_sim.plugins import is_plugin
 
@@ -66,8 +66,7 @@ def _check(arguments: argparse.Namespace) -> int:
     steps = options.steps_of(arguments.duration, arguments.dt, 't*')
     if arguments.skip is not None:
         options.within('--skip', arguments.skip, 0.0, arguments.duration, 't*')
-    for path in filter(None, (arguments.json, arguments.dcp)):
-        check_free(path, arguments.force)
+    outputs.claim({'--json': arguments.json, '--dcp': arguments.dcp}, arguments.force)
     return steps
 
 

@@ -10,10 +10,10 @@ import argparse
 from pathlib import Path
 from typing import Any, Iterator
 
-from dewing_cli import options
+from dewing_cli import options, outputs
 from dewing_cli.progress import bar, until_interrupted
 from dewing_sim.errors import BadInput
-from dewing_sim.files import check_free, new_file
+from dewing_sim.files import new_file
 
 FRAMES = 40
 SUFFIXES = {True: ('.gif', '.mp4'), False: ('.png', '.pdf', '.svg')}
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> None:
     if path.suffix not in SUFFIXES[filming]:
         raise BadInput(f'{path}: the file name must end in one of '
                        f"{', '.join(SUFFIXES[filming])}")
-    check_free(path, arguments.force)
+    outputs.claim({'--out': path}, arguments.force, [arguments.state])
     from dewing_cli.figures import flow as flow_figure
     from dewing_sim.rest import checkpoint
     from dewing_sim.wing import Wing

@@ -10,10 +10,9 @@ import argparse
 import warnings
 from typing import Any, Iterator, NamedTuple
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import Laps, bar, until_interrupted
 from dewing_sim.errors import BadInput
-from dewing_sim.files import check_free
 from dewing_sim.parameters import Case
 
 
@@ -74,8 +73,9 @@ def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
     options.within('--every', arguments.every, 1, 1_000_000, 'steps')
     if arguments.skip is not None:
         options.within('--skip', arguments.skip, 0.0, arguments.duration, 's')
-    for path in filter(None, (arguments.out, arguments.json, arguments.save_state)):
-        check_free(path, arguments.force)
+    outputs.claim({'--out': arguments.out, '--json': arguments.json,
+                   '--save-state': arguments.save_state}, arguments.force,
+                  options.read_files(arguments.case, arguments.controller))
     _check_voltage(arguments.voltage, case)
     return case, settings, steps
 

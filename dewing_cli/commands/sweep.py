@@ -13,9 +13,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
-from dewing_sim.files import check_free
+from dewing_sim.errors import BadInput
+from dewing_sim.files import is_stream
 from dewing_sim.machine import jobs
 from dewing_sim.machine.signals import undisturbed
 
@@ -66,9 +67,11 @@ def _check(arguments: argparse.Namespace) -> Any:
         options.steps_of(arguments.duration, point.case.numerics.time_step, 's')
     options.within('--skip', skip, 0.0, 0.99 * arguments.duration, 's')
     options.workers(arguments, jobs.cores)
-    if arguments.json:
-        check_free(arguments.json, arguments.force)
-    check_free(arguments.out, overwrite=True)
+    reads = options.read_files(arguments.case)
+    outputs.claim({'--json': arguments.json}, arguments.force, reads)
+    outputs.claim({'--out': arguments.out, '--json': arguments.json}, True, reads)
+    if is_stream(arguments.out):
+        raise BadInput(f'--out {arguments.out} is no file; a sweep writes it after every point')
     if Path(arguments.out).exists() and not arguments.force:
         return resume(sweep, arguments.out, arguments.retry)
     return Table(sweep)

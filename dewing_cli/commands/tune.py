@@ -11,10 +11,10 @@ import argparse
 from pathlib import Path
 from typing import Any, Iterator
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
 from dewing_control.tuning.bounds import Bounds
-from dewing_sim.files import check_free, new_file
+from dewing_sim.files import new_file
 
 FILES = ('controller.yaml', 'model.npz', 'metrics.json', 'bode.png', 'nyquist.png',
          'response.png')
@@ -91,10 +91,8 @@ def _check(arguments: argparse.Namespace) -> tuple[Any, Any]:
                     options.within('--saturation', arguments.saturation, 0.0, 1.0, ''),
                     options.within('--noise-gain', arguments.noise_gain, 1.0e-3, 1.0e6, ''),
                     options.within('--tension', arguments.tension, 0.05, 1.0, ''))
-    for name in FILES:
-        check_free(Path(arguments.out) / name, arguments.force)
-    if arguments.json:
-        check_free(arguments.json, arguments.force)
+    outputs.claim(outputs.within(arguments.out, FILES) | {'--json': arguments.json},
+                  arguments.force)
     return settings, bounds
 
 

@@ -8,9 +8,8 @@ full suite takes about ten minutes on two cores, --quick about one.
 
 import argparse
 
-from dewing_cli import options, results
+from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
-from dewing_sim.files import check_free
 from dewing_sim.fluid import engines
 
 
@@ -31,12 +30,10 @@ def run(arguments: argparse.Namespace) -> int:
         options.check_engine(engine)
     from dewing_sim.machine.jobs import idle_cores
     workers = options.workers(arguments, idle_cores)
-    if arguments.json:
-        check_free(arguments.json, arguments.force)
-
     from dewing_sim.verification import report, suite
-    if arguments.out:
-        check_free(f'{arguments.out}/{report.PAGE}', arguments.force)
+    images = [] if arguments.quick else map(report.image, suite.STUDIES)
+    outputs.claim(outputs.within(arguments.out, [report.PAGE, *images])
+                  | {'--json': arguments.json}, arguments.force)
     with bar('verifying', quiet=arguments.quiet) as show:
         verification = suite.verify(chosen, arguments.quick, workers, show)
     if not arguments.quiet:

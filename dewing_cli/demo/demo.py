@@ -16,14 +16,14 @@ from subprocess import Popen
 from time import perf_counter
 from typing import Any
 
-from dewing_cli import options
+from dewing_cli import options, outputs
 from dewing_cli.demo import results as demo_results
 from dewing_cli.progress import bar
 from dewing_cli.results import write_json
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
-from dewing_sim.files import check_free
+from dewing_sim.files import check_free, is_stream, target_of
 from dewing_sim.machine.signals import Stop, end
 from dewing_sim.parameters import Case
 from dewing_sim.records import bag
@@ -59,9 +59,9 @@ def run(arguments: Namespace) -> None:
     case = options.load_case(arguments)
     options.steps_of(arguments.duration, case.numerics.time_step, 's')
     settings = parameters.load(arguments.controller, ControllerSettings)
-    if arguments.json:
-        check_free(arguments.json, arguments.force)
     demo = Demo(case, settings, arguments.duration, Path(arguments.out), arguments.quiet)
+    outputs.claim({path.name: path for path in demo.results} | {'--json': arguments.json},
+                  arguments.force, options.read_files(arguments.case, arguments.controller))
     metrics = perform(demo, arguments.force)
     if arguments.json:
         write_json(arguments.json, metrics, arguments.force)
@@ -79,7 +79,8 @@ def perform(demo: Demo, overwrite: bool = False) -> dict[str, Any]:
     began = perf_counter()
     for path in demo.results:
         check_free(path, overwrite)
-        path.unlink(missing_ok=True)
+        if not is_stream(path):
+            target_of(path).unlink(missing_ok=True)
     demo.out.mkdir(parents=True, exist_ok=True)
     (demo.out / 'case.yaml').write_text(parameters.to_yaml(demo.case), encoding='utf-8')
     try:

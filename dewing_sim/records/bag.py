@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import yaml
 
-from dewing_sim.files import check_free
+from dewing_sim.files import check_free, is_stream, target_of
 from dewing_sim.records.mcap_file import Losses, messages
 from dewing_sim.records.runs import Run, choose, split
 
@@ -40,9 +40,13 @@ class BagWriter:
     def __init__(self, path: str | Path):
         """Open the file; raise `BadInput` if it exists or cannot be written."""
         from mcap.writer import Writer
-        path = check_free(path, way_out='name another file')
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = path.open('xb')
+        check_free(path, way_out='name another file')
+        if is_stream(path):
+            self._file = open(path, 'wb')
+        else:
+            target = target_of(path)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            self._file = target.open('xb')
         self._writer = Writer(self._file, chunk_size=CHUNK)
         self._writer.start(profile='ros2', library='dewing')
         self._channels: dict[str, int] = {}

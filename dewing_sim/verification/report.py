@@ -86,11 +86,16 @@ def write(verification: Verification, folder: str | Path, overwrite: bool = Fals
     return folder / PAGE
 
 
+def image(study: Study) -> str:
+    """Return the file of the figure of a study, within the folder of the page."""
+    return f'images/verification_{study.name}.png'
+
+
 def _draw(study: Study, verification: Verification, folder: Path, overwrite: bool) -> Path:
     from matplotlib.figure import Figure
     figure = Figure(figsize=(9.0, 3.6), layout='constrained')
     study.draw(figure, verification.results[study.name])
-    path = folder / 'images' / f'verification_{study.name}.png'
+    path = folder / image(study)
     with new_file(path, overwrite) as file:
         figure.savefig(file, format='png', dpi=110, metadata={'Software': None})
     return path
