@@ -31,11 +31,11 @@ from dewing_cli.sweep.sweep import (
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
 
-ANGLE, VOLTAGE = 'flow.angle_of_attack_deg', 'actuation.voltage'
+ANGLE, LIMIT = 'flow.angle_of_attack_deg', 'actuation.voltage_limit'
 COARSE = {'numerics.grid': 'fast', 'numerics.trim_time': 0.1, 'membrane.elements': 16}
 OPTIONS = [text for key, value in COARSE.items() for text in ('--set', f'{key}={value}')]
 OPTIONS += ['--duration', '0.003']
-VARY = ['--vary', f'{ANGLE}=2.0,4.0', '--vary', f'{VOLTAGE}=0.0,1400.0']    # slack at 1300 V
+VARY = ['--vary', f'{ANGLE}=2.0,4.0', '--vary', f'{LIMIT}=1250.0,1400.0']    # slack at 1300 V
 PATIENCE = 300.0
 
 
@@ -96,7 +96,7 @@ def test_a_point_has_the_metrics_of_the_command_simulate():
 
 
 def test_a_slack_membrane_is_a_result_with_its_reason():
-    point = make(f'{VOLTAGE}=1400.0').points[0]
+    point = make(f'{LIMIT}=1400.0').points[0]
     result = run_point(point.case, 0.003, 0.0)
     assert result.status == FAILED and result.metrics == {}
     assert 'loses its tension at 1300 V' in result.reason
@@ -143,7 +143,7 @@ def test_a_sweep_is_extended_by_further_values_in_any_order():
 
 @pytest.mark.parametrize('texts, changes, complaint', [
     ([f'{ANGLE}=2.0'], {}, f'also holds {ANGLE} = 4.0'),
-    ([f'{VOLTAGE}=2.0'], {}, f'varies {ANGLE}, not {VOLTAGE}'),
+    ([f'{LIMIT}=2.0'], {}, f'varies {ANGLE}, not {LIMIT}'),
     ([f'{ANGLE}=2.0,4.0'], {'flow.density': 1.3}, 'computed with flow.density = 1.225, not 1.3'),
     ([f'{ANGLE}=2.0,4.0'], {'duration': 0.5}, 'computed with duration = 0.003, not 0.5'),
 ])
@@ -200,8 +200,9 @@ def test_a_sweep_keeps_its_points_and_records_failures(cluster, capsys, monkeypa
     assert cli.main([*command, '--json', 'sweep.json']) == 0
     report = json.loads(Path('sweep.json').read_text())
     assert report['counts'] == {'missing': 0, 'done': 2, 'failed': 2, 'lost': 0}
-    assert [(row[ANGLE], row[VOLTAGE], row['status']) for row in report['points']] == [
-        (2.0, 0.0, 'done'), (2.0, 1400.0, 'failed'), (4.0, 0.0, 'done'), (4.0, 1400.0, 'failed')]
+    assert [(row[ANGLE], row[LIMIT], row['status']) for row in report['points']] == [
+        (2.0, 1250.0, 'done'), (2.0, 1400.0, 'failed'),
+        (4.0, 1250.0, 'done'), (4.0, 1400.0, 'failed')]
     assert 'loses its tension' in report['points'][1]['reason']
     assert 0.1 < report['points'][0]['cl_mean'] < report['points'][2]['cl_mean'] < 0.7
     assert '2 done, 2 failed; 0 of them from before; sweep.nc' in capsys.readouterr().out
@@ -218,7 +219,7 @@ def test_a_sweep_keeps_its_points_and_records_failures(cluster, capsys, monkeypa
 
 
 def test_the_status_is_1_if_no_point_succeeds(cluster, capsys):
-    command = ['sweep', *OPTIONS, '--vary', f'{VOLTAGE}=1400.0', '--scheduler', cluster]
+    command = ['sweep', *OPTIONS, '--vary', f'{LIMIT}=1400.0', '--scheduler', cluster]
     assert cli.main([*command, '--out', 'sweep.nc']) == 1
     assert 'failed: BadInput' in capsys.readouterr().out
 
