@@ -88,7 +88,15 @@ def resume(sweep: Sweep, path: str | Path, retry: bool = False) -> Table:
     not. Raises `BadInput` unless the file is of a sweep over the same parameters of the same case
     and has no values that ``sweep`` leaves out: nothing computed is lost without permission.
     """
-    table, stored = Table(sweep), _read(path)
+    stored = _read(path)
+    try:
+        return _taken_over(sweep, stored, path, retry)
+    except (KeyError, IndexError, ValueError, TypeError, OverflowError) as error:
+        raise BadInput(_NO_SWEEP.format(path, f' ({type(error).__name__}: {error})')) from None
+
+
+def _taken_over(sweep: Sweep, stored: Any, path: str | Path, retry: bool) -> Table:
+    table = Table(sweep)
     places = _places(sweep, stored, path)
     current = {point.index: sweep.fingerprint(point) for point in sweep.points}
     for old, new in places.items():
@@ -103,13 +111,15 @@ def resume(sweep: Sweep, path: str | Path, retry: bool = False) -> Table:
 def _read(path: str | Path) -> Any:
     import xarray
     try:
-        stored = xarray.load_dataset(path, engine='scipy')
+        stored = xarray.load_dataset(path, engine='scipy', mmap=False)
     except Exception as error:      # xarray and scipy raise whatever a damaged file provokes
-        raise BadInput(f'{path}: not a file of a sweep ({type(error).__name__}); '
-                       '--force writes over it') from None
+        raise BadInput(_NO_SWEEP.format(path, f' ({type(error).__name__})')) from None
     if stored.attrs.get('title') != TITLE:
-        raise BadInput(f'{path}: not a file of a sweep; --force writes over it')
+        raise BadInput(_NO_SWEEP.format(path, ''))
     return stored
+
+
+_NO_SWEEP = '{}: not a file of a sweep{}; --force writes over it'
 
 
 def _places(sweep: Sweep, stored: Any, path: str | Path) -> dict[tuple, tuple]:

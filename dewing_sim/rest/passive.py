@@ -11,10 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import yaml
 
-from dewing_sim import yaml_text
-from dewing_sim.errors import BadInput
+from dewing_sim.files import read_npz
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine import caches
 from dewing_sim.rest.trim import QUASI_STEADY, fingerprint
@@ -32,11 +30,11 @@ def camber(wing: Wing, rest: State, progress=None) -> tuple[float, float]:
 
     ``progress(done, total)`` is called if a shedding wing has to be marched on.
     """
-    name = f'passive-{fingerprint(wing)}.yaml'
+    name = f'passive-{fingerprint(wing)}.npz'
     found = caches.recall(name, _read)
     if found is None:
         found = measure(wing, rest, progress)
-        caches.keep(name, lambda draft: draft.write_text(yaml.safe_dump(list(found))))
+        caches.keep(name, lambda draft: _save(draft, found))
     return found
 
 
@@ -74,10 +72,11 @@ def _sample(wing: Wing, state: State) -> tuple[float, float]:
     return float(outputs.camber_mean), float(outputs.camber_max)
 
 
+def _save(path: Path, found: tuple[float, float]) -> None:
+    np.savez(path, camber=found)            # an npz tells a half-written file by its checksums
+
+
 def _read(path: Path) -> tuple[float, float]:
-    try:
-        text = path.read_text(encoding='utf-8')
-        mean, largest = map(float, yaml_text.read(text, f'{path}: not a passive camber'))
-    except (TypeError, ValueError):
-        raise BadInput(f'{path}: not a passive camber') from None
+    with read_npz(path, 'a passive camber') as arrays:
+        mean, largest = arrays['camber'].tolist()
     return mean, largest

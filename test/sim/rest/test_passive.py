@@ -28,7 +28,7 @@ def test_a_steady_wing_has_the_camber_of_its_rest_state(cache):
     outputs = built.plant.observe(built.rest)
     assert built.identity.camber_mean == outputs.camber_mean
     assert built.identity.camber_max == outputs.camber_max
-    kept, = cache.glob('passive-*.yaml')
+    kept, = cache.glob('passive-*.npz')
     kept.write_text('broken', encoding='utf-8')
     assert build.build_wing(case).identity == built.identity
 
