@@ -44,4 +44,4 @@ def row(each: Quantity) -> str:
 
 
 if __name__ == '__main__':
-    PAGE.write_text(page())
+    PAGE.write_text(page(), encoding='utf-8')

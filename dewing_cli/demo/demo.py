@@ -135,8 +135,9 @@ def record(demo: Demo, name: str, stop: Stop) -> None:
                 session.executor.spin_once(timeout_sec=GLANCE)
                 show(clock.time, demo.duration, clock.time)
         if simulator.poll():
-            said = (folder / 'dewing_sim.ros.node.txt').read_text().strip().splitlines()
-            raise RunFailed(f"{name}: {said[-1] if said else 'the simulator failed'}")
+            said = (folder / 'dewing_sim.ros.node.txt').read_text('utf-8', 'replace')
+            lines = said.strip().splitlines()
+            raise RunFailed(f"{name}: {lines[-1] if lines else 'the simulator failed'}")
 
 
 def report_kept(demo: Demo) -> None:

@@ -46,12 +46,15 @@ def messages(path: str | Path, losses: Losses, topics: Collection[str] = (),
 
     Raises `BadInput` if the file cannot be opened or is not MCAP.
     """
-    from mcap.records import Channel, Message, MessageIndex, Schema
-    known = _Descriptions(path)
+    from mcap.records import Channel, Message, MessageIndex, Schema, Statistics
+    known, found = _Descriptions(path), 0
     for record in _records(path, losses):
         if isinstance(record, (Channel, Schema)):
             known.add(record)
+        elif isinstance(record, Statistics):
+            _compare(record.message_count, found, losses)
         elif isinstance(record, (Message, MessageIndex)):
+            found += len(record.records) if isinstance(record, MessageIndex) else 1
             channel = known.channel(record.channel_id)
             topic = channel.topic if channel else ''
             if topics and topic not in topics:
@@ -62,6 +65,13 @@ def messages(path: str | Path, losses: Losses, topics: Collection[str] = (),
                 losses.messages[topic, 'are on channels that the file does not describe'] += 1
             else:
                 yield channel, known.schemas.get(channel.schema_id), record
+
+
+def _compare(listed: int, found: int, losses: Losses) -> None:
+    """Note messages that are in no damaged chunk, but behind a length that is wrong."""
+    if listed > found and not losses.remarks:
+        losses.remarks.append(f'{listed - found} of the {listed} messages that the file says to '
+                              'hold are not found')
 
 
 class _Descriptions:

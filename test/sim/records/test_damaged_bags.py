@@ -131,6 +131,19 @@ def test_a_flipped_byte_costs_its_chunk_alone(compression, number, tmp_path, cap
     assert 'lost: 1 chunks are left out: they' in said or 'their checksums are wrong' in said
 
 
+def test_what_a_wrong_length_hides_is_missed(tmp_path):
+    """The length of the first chunk is made to reach to the third."""
+    path = tmp_path / 'run.mcap'
+    (first, _), (_, _), (third, _), *_ = written(path, CompressionType.ZSTD, 9000)
+    spoilt = bytearray(path.read_bytes())
+    spoilt[first + 1:first + 9] = (third - first - 9).to_bytes(8, 'little')
+    path.write_bytes(spoilt)
+    losses = Losses()
+    found = sum(1 for _ in bag.read(path, losses=losses))
+    assert 8000 < found < 9000 and losses.sentences() == [
+        f'{9000 - found} of the 9000 messages that the file says to hold are not found']
+
+
 @settings(max_examples=150, deadline=None,
           suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
