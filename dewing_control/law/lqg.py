@@ -89,7 +89,7 @@ class Lqg(Law):
     def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
         """Return the next memory and V^2, which is never negative nor above the limit."""
         reference, z, scale = self.observe(memory, measurement)
-        return self.command(reference, z, scale, self._wanted(z, reference))
+        return self.command(reference, z, scale, self.wanted(z, reference))
 
     def observe(self, memory: Memory, measurement: Measurement,
                 ) -> tuple[float, np.ndarray, float]:
@@ -122,7 +122,8 @@ class Lqg(Law):
         """Part of w for each unit of w_r - u0: 1 + K (I - A)^-1 B."""
         return 1.0 + float(self.feedback @ self.observer.design.steady)
 
-    def _wanted(self, z: np.ndarray, reference: float) -> float:
+    def wanted(self, z: np.ndarray, reference: float) -> float:
+        """Return w without its limits."""
         model = self.observer.design
         held = (reference - 1.0) / model.static_gain
         return model.operating_input + held * self.hold - float(self.gain @ z)

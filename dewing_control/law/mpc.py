@@ -9,8 +9,10 @@ The prediction corrects the LQG law by c, held over blocks of growing length,
 which costs (rho + B^T P B) sum c^2 more than LQG (completion of squares with the Riccati cost P).
 So the programme is  min c^T H c  with diagonal H, subject at the start of each block to
 0 <= w <= w_max and |w_b - w_b-1| <= rate limit; its matrices are constant and only bounds change.
-Each block moves its own row, so w = w_applied is always feasible. Where LQG satisfies the bounds
-c = 0 is the solution. Otherwise OSQP (Stellato et al. 2020, doi:10.1007/s12532-020-00179-2) solves
+Each block moves its own row, so w = w_applied is always feasible. Where V^2 was above its limit,
+the limit counts as applied, and is held as long as LQG would: the governor lowers the reference at
+once, and V^2 would dip below the limit to brake the fall. Where LQG satisfies the bounds c = 0 is
+the solution. Otherwise OSQP (Stellato et al. 2020, doi:10.1007/s12532-020-00179-2) solves
 it, factorised once and warm-started from the memory.
 """
 
@@ -50,6 +52,7 @@ class Memory(NamedTuple):
     base: lqg.Memory
     primal: np.ndarray
     dual: np.ndarray
+    falling: bool = False           # from a voltage above the limit, which is held meanwhile
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,13 +158,17 @@ class Mpc(Law):
 
     def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
         """Return the next memory and V^2, which is never negative nor above the limit."""
-        base = self.base
+        base, bound = self.base, self.v_squared_max / self.base.v_squared_reference
         reference, z, scale = base.observe(memory.base, measurement)
         w_max = scale * base.v_squared_max / base.v_squared_reference
-        w, primal, dual = self._solve(memory, z, self.govern(z, reference, w_max),
-                                      memory.base.command * scale, w_max)
-        held, v_squared = base.command(reference, z, scale, w)
-        return Memory(held, primal, dual), v_squared
+        applied = memory.base.command * scale
+        falling = memory.falling or memory.base.command > bound
+        if falling:
+            applied = min(applied, w_max)
+        w, primal, dual = self._solve(memory, z, self.govern(z, reference, w_max), applied, w_max)
+        falling = falling and base.wanted(z, reference) >= w_max
+        held, v_squared = base.command(reference, z, scale, w_max if falling else w)
+        return Memory(held, primal, dual, falling), v_squared
 
     def govern(self, z: np.ndarray, reference: float, w_max: float) -> float:
         """Return w_r - u0 for the reference nearest to ``reference`` that is ever attainable.

@@ -229,6 +229,15 @@ def test_a_change_of_gains_makes_no_bump():
     assert kept / SLACK == pytest.approx(expected, rel=1.0e-6)
 
 
+@pytest.mark.parametrize('limit', [500.0, 100.0])
+@pytest.mark.parametrize('kind', KINDS)
+def test_a_limit_below_the_voltage_found_is_kept_at_once_and_held(kind, limit):
+    """No law dips below the limit while the membrane gives way to it."""
+    controller = make(kind, command__voltage_limit=limit)
+    _, commands = run(controller, reduced_model(), 60, begin=800.0**2)
+    assert commands == pytest.approx(limit**2, rel=1.0e-12) and commands.max() <= limit**2
+
+
 def test_mpc_needs_a_horizon_and_a_known_kind():
     with pytest.raises(BadInput, match='kind'):
         make('fuzzy')
