@@ -4,16 +4,19 @@
 
 Prints tension, limits and static camber under a uniform pressure; --out gets the figures of
 docs/material.md: stress against stretch, tension against voltage, the voltage-stretch curve of a
-free sheet with its pull-in, and static camber against voltage of both elements.
+free sheet with its pull-in, and static camber against voltage of both elements. A curve that
+cannot be computed is named at the end, with exit status 1; the others are delivered.
 
 --coupled compares both elements in the coupled wing instead, at rest and after a pulse of V^2, in
 per cent of the membrane's: about three minutes on one core.
 """
 
 import argparse
+from collections.abc import Mapping
 
 from dewing_cli import options, outputs, results
 from dewing_cli.progress import bar
+from dewing_sim.errors import RunFailed
 from dewing_sim.parameters import Case
 
 VOLTAGES = [0.0, 400.0, 800.0]
@@ -43,7 +46,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def show(arguments: argparse.Namespace, case: Case) -> None:
-    """Compute, draw and deliver the curves."""
+    """Compute, draw and deliver the curves; raise `RunFailed` after that if some failed."""
     from dewing_cli.figures import material as material_figures
     figures = outputs.within(arguments.out, [f'{name}.png' for name in material_figures.DRAWINGS])
     outputs.claim(figures | {'--json': arguments.json}, arguments.force)
@@ -54,23 +57,33 @@ def show(arguments: argparse.Namespace, case: Case) -> None:
     if arguments.out:
         material_figures.save(found, arguments.out, arguments.force)
     results.deliver(arguments, found.metrics())
+    _report(found.failures)
+
+
+def _report(failures: Mapping[str, str]) -> None:
+    """Raise `RunFailed` that names what failed, with the reasons."""
+    if failures:
+        raise RunFailed('not computed: ' + '; '.join(
+            f'{name} ({reason})' for name, reason in failures.items()))
 
 
 def compare(arguments: argparse.Namespace, case: Case) -> None:
-    """Compare the elements in the coupled wing and deliver one row a support and voltage."""
+    """Compare the elements in the coupled wing and deliver one row a support and voltage.
+
+    Raises `RunFailed` after that if some failed.
+    """
     outputs.claim({'--json': arguments.json}, arguments.force)
     voltages = arguments.voltages or VOLTAGES
     for voltage in voltages:
         options.within('--voltages', voltage, 0.0, case.actuation.voltage_limit, 'V')
     from dewing_sim.verification.wing import solid_wing
-    rows = []
+    rows, failures = [], {}
     with bar('comparing', quiet=arguments.quiet) as progress:
-        for row in solid_wing.compare(case, voltages, progress):
+        for row in solid_wing.compare(case, voltages, progress, failures=failures):
             rows.append(row.to_mapping())
     if arguments.json:
         results.write_json(arguments.json, {'coupled': rows}, arguments.force)
-    if arguments.quiet:
-        return
-    for row in rows:
+    for row in () if arguments.quiet else rows:
         print(f'pinned {row.pop("support")}, {row.pop("voltage"):g} V')
         results.print_table({f'  {name} [%]': 100.0 * value for name, value in row.items()})
+    _report(failures)

@@ -11,10 +11,17 @@ from dewing_sim.structure.material.curves import Curves
 
 
 def save(curves: Curves, folder: str | Path, overwrite: bool = False) -> list[Path]:
-    """Write every figure as PNG into ``folder`` and return the paths."""
+    """Write every figure as PNG into ``folder`` and return the paths.
+
+    A figure without a curve, since it failed, is not made.
+    """
     from matplotlib.figure import Figure
+    has = {'stress': curves.stress is not None, 'tension': curves.tension is not None,
+           'free_sheet': curves.free_voltage is not None, 'camber': bool(curves.camber)}
     paths = []
     for name, draw in DRAWINGS.items():
+        if not has[name]:
+            continue
         figure = Figure(figsize=(6.0, 3.6), layout='constrained')
         draw(figure.subplots(), curves)
         paths.append(Path(folder) / f'{name}.png')
@@ -60,7 +67,8 @@ def camber(axes, curves: Curves):
     for name, style, label in (('membrane', 'k-', 'membrane'),
                                ('solid', 'C1--', 'solid, lower side pinned'),
                                ('solid_middle', 'C0:', 'solid, pinned in the middle')):
-        axes.plot(curves.camber_voltage, 100.0 * curves.camber[name], style, label=label)
+        if name in curves.camber:
+            axes.plot(curves.camber_voltage, 100.0 * curves.camber[name], style, label=label)
     axes.set(xlabel='voltage [V]', ylabel='static camber [% chord]')
     axes.legend()
 

@@ -56,3 +56,34 @@ def test_both_elements_are_compared_in_the_coupled_wing(capsys, tmp_path):
 
 def test_voltages_beyond_the_limit_are_refused():
     assert cli.main([*COARSE, '--coupled', '--voltages', '5000']) == 2
+
+
+@pytest.mark.parametrize('prestretch', [2.0, 2.4, 3.0, 5.0, 7.0])
+def test_solid_elements_find_their_equilibria_at_common_prestretches(prestretch, tmp_path):
+    assert cli.main(['material', '--set', 'membrane.elements=64', '--quiet', '--json', 'm.json',
+                     '--set', f'membrane.prestretch={prestretch}']) == 0
+    found = json.loads((tmp_path / 'm.json').read_text())
+    assert found['largest_difference_solid_middle'] < 1e-4
+    assert found['largest_difference_solid'] < 0.01
+    assert found['camber_solid_highest'] > found['camber_solid_passive'] > 1e-5
+
+
+def test_a_curve_that_fails_is_named_and_the_others_are_delivered(tmp_path, capsys):
+    """Near its limit the law locks up at the corners of solid elements, not in a flat sheet."""
+    near = [f'--set=membrane.{name}' for name in (
+        'elements=16', 'prestretch=7.5', 'gent_limit=55.0')]
+    assert cli.main(['material', *near, '--json', 'm.json', '--out', 'figures']) == 1
+    said = capsys.readouterr().err
+    assert said.startswith('dewing: not computed: camber of solid (element 0 ')
+    assert 'Gent limit 55' in said and said.count('\n') == 1
+    found = json.loads((tmp_path / 'm.json').read_text())
+    assert found['camber_membrane_passive'] > 0.0 and found['camber_solid_middle_passive'] > 0.0
+    assert 'camber_solid_passive' not in found and 'largest_difference_solid' not in found
+    assert found['tension'] > 0.0
+    assert len(list((tmp_path / 'figures').iterdir())) == 4
+
+
+def test_without_a_load_there_is_no_difference_to_report(tmp_path):
+    assert cli.main([*COARSE, '--lift', '0', '--json', 'm.json']) == 0
+    found = json.loads((tmp_path / 'm.json').read_text())
+    assert found['camber_membrane_passive'] == 0.0 and 'largest_difference_solid' not in found

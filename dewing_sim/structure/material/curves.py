@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The curves that describe an elastomer and the membrane made of it, in SI units."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from dewing_sim import parameters
+from dewing_sim.errors import DewingError
 from dewing_sim.structure import elements
 from dewing_sim.structure.material import limits
 from dewing_sim.structure.material.elastomer import Elastomer, diagonal
@@ -25,23 +29,28 @@ STRUCTURES = {'membrane': {'element': 'membrane'},
 
 @dataclass(frozen=True)
 class Curves:
-    """What `of_section` found; arrays of equal length belong together."""
+    """What `of_section` found; arrays of equal length belong together, what failed is None."""
 
     stretch: np.ndarray
-    stress: dict[str, np.ndarray]       # mode -> passive Cauchy stress along the stretch, Pa
-    voltage: np.ndarray                 # V, up to the loss of tension
-    tension: np.ndarray                 # N/m, of the flat membrane
-    slack_voltage: float
+    stress: dict[str, np.ndarray] | None    # mode -> passive Cauchy stress along the stretch, Pa
+    voltage: np.ndarray | None          # V, up to the loss of tension
+    tension: np.ndarray | None          # N/m, of the flat membrane
+    slack_voltage: float | None
     free_stretch: np.ndarray            # equal biaxial, no load
-    free_voltage: np.ndarray
+    free_voltage: np.ndarray | None
     pull_in: limits.PullIn | None       # None if the law locks up first
     thickness: float                    # before prestretch, m
     camber_voltage: np.ndarray
     camber: dict[str, np.ndarray]       # structure -> largest static deflection in chords
+    failures: dict[str, str]            # curve -> why there is none
 
     def metrics(self) -> dict[str, float]:
         """Return the numbers of the curves; those of a pull-in only if there is one."""
-        found = {'tension': float(self.tension[0]), 'slack_voltage': self.slack_voltage}
+        found = {}
+        if self.tension is not None:
+            found['tension'] = float(self.tension[0])
+        if self.slack_voltage is not None:
+            found['slack_voltage'] = self.slack_voltage
         if self.pull_in:
             found |= {'pull_in_stretch': self.pull_in.stretch,
                       'pull_in_voltage': self.pull_in.field * self.thickness}
@@ -51,36 +60,60 @@ class Curves:
             found[f'camber_{name}_passive'] = float(camber[0])
             found[f'camber_{name}_highest'] = float(camber[-1])
         found['highest_voltage'] = float(self.camber_voltage[-1])
+        thin = self.camber.get('membrane', np.zeros(1))
         for name in ('solid', 'solid_middle'):
-            difference = self.camber[name] / self.camber['membrane'] - 1.0
-            found[f'largest_difference_{name}'] = float(np.abs(difference).max())
+            if name in self.camber and thin.all():      # none without a load
+                difference = self.camber[name] / thin - 1.0
+                found[f'largest_difference_{name}'] = float(np.abs(difference).max())
         return found
 
 
 def of_section(section: parameters.Membrane, pressure: float, voltage_limit: float) -> Curves:
     """Return the curves of a membrane under a uniform ``pressure`` (Pa) up to ``voltage_limit``.
 
-    The viscous branch, which statics do not see, is left out.
+    The viscous branch, which statics do not see, is left out. A curve that cannot be computed is
+    among the ``failures``, and the others are there.
     """
     section = parameters.replace(section, {'viscous_share': 0.0})
-    sheet = Sheet.from_parameters(section)
-    elastomer = sheet.elastomer
-    slack = float(np.sqrt(sheet.loss_of_tension_v_squared(section.prestretch)))
-    voltage = np.linspace(0.0, slack, POINTS)
+    sheet, failures = Sheet.from_parameters(section), {}
+    elastomer, prestretch = sheet.elastomer, section.prestretch
+
+    def attempt(curve: str, compute: Callable[[], Any]) -> Any:
+        try:
+            return compute()
+        except DewingError as error:
+            failures[curve] = str(error)
+            return None
+
+    slack = attempt('loss of tension', lambda: float(np.sqrt(
+        sheet.loss_of_tension_v_squared(prestretch))))
+    voltage = None if slack is None else np.linspace(0.0, slack, POINTS)
     stretch = np.linspace(1.0, 0.95 * min(_reach(elastomer, limits.equibiaxial),
                                           _reach(elastomer, limits.plane_strain)), POINTS)
     free = np.geomspace(1.0, 0.999 * _reach(elastomer, limits.equibiaxial), POINTS)
-    camber_voltage = np.linspace(0.0, min(voltage_limit, 0.95 * slack), VOLTAGES)
+    highest = voltage_limit if slack is None else min(voltage_limit, 0.95 * slack)
+    camber_voltage = np.linspace(0.0, highest, VOLTAGES)
+    camber = {name: attempt(f'camber of {name}', partial(
+        _cambers_of, section, changes, pressure, camber_voltage))
+        for name, changes in STRUCTURES.items()}
     return Curves(
-        stretch=stretch, stress=_stresses(elastomer, stretch), voltage=voltage,
-        tension=np.array([sheet.respond([section.prestretch], v * v).tension[0]
-                          for v in voltage]),
+        stretch=stretch, stress=attempt('stress', lambda: _stresses(elastomer, stretch)),
+        voltage=voltage,
+        tension=None if voltage is None else attempt('tension', lambda: np.array(
+            [sheet.respond([prestretch], v * v).tension[0] for v in voltage])),
         slack_voltage=slack, free_stretch=free,
-        free_voltage=limits.equibiaxial_field(elastomer, free) * section.initial_thickness,
+        free_voltage=attempt('free sheet', lambda: (
+            limits.equibiaxial_field(elastomer, free) * section.initial_thickness)),
         pull_in=_pull_in(elastomer), thickness=section.initial_thickness,
         camber_voltage=camber_voltage,
-        camber={name: cambers(elements.make(parameters.replace(section, changes)), pressure,
-                              camber_voltage) for name, changes in STRUCTURES.items()})
+        camber={name: curve for name, curve in camber.items() if curve is not None},
+        failures=failures)
+
+
+def _cambers_of(section: parameters.Membrane, changes: dict[str, Any], pressure: float,
+                voltage: np.ndarray) -> np.ndarray:
+    structure = elements.make(parameters.replace(section, changes))
+    return cambers(structure, pressure, voltage)
 
 
 def cambers(structure: Membrane | Solid, pressure: float, voltage: np.ndarray) -> np.ndarray:

@@ -30,10 +30,24 @@ def fitted(solid: Strip, density: float) -> Strip:
         tension = float(np.median(hanging.tension(hanging.rest_position, 0.0)))
         if abs(tension - target) <= 1.0e-9 * target:
             break
-        length = hanging.length * (1.0 - (target - tension) / slope)
-        cut = replace(hanging, length=length, mass=nodal_mass(length, solid.sheet, density))
-        hanging = replace(cut, rest_position=statics.newton(cut, hanging.rest_position, 0.0))
+        hanging = _cut(hanging, (target - tension) / slope, density)
     return hanging
+
+
+def _cut(hanging: Strip, shortening: float, density: float) -> Strip:
+    """Return the strip at rest, its reference shorter by the part ``shortening``."""
+    def shorter(share):
+        length = hanging.length * (1.0 - share * shortening)
+        return replace(hanging, length=length,
+                       mass=nodal_mass(length, hanging.sheet, density))
+
+    def snap(start, share):
+        strip = shorter(share)
+        return statics.newton(strip, statics.slide(strip, start, 0.0), 0.0)
+
+    position = statics.march(lambda start, share: statics.newton(shorter(share), start, 0.0),
+                             hanging.rest_position, snap=snap)
+    return replace(shorter(1.0), rest_position=position)
 
 
 def _released(solid: Strip) -> Strip:
@@ -42,7 +56,12 @@ def _released(solid: Strip) -> Strip:
     position = statics.newton(solid, solid.rest_position, 0.0)
     reaction = np.zeros_like(position)
     reaction[[1, -1]] = lower.internal_force(position, 0.0)[[1, -1]]
+
+    def snap(start, share):
+        held = (1.0 - share) * reaction
+        return statics.newton(lower, statics.slide(lower, start, 0.0, held=held), 0.0, held=held)
+
     position = statics.march(
         lambda start, share: statics.newton(lower, start, 0.0, held=(1.0 - share) * reaction),
-        position)
+        position, snap=snap)
     return replace(lower, rest_position=position - position[0])

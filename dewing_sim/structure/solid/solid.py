@@ -145,8 +145,9 @@ class Solid(Taut, Viscous):
     def _edges(self) -> tuple[int, np.ndarray, np.ndarray]:
         """Stations on the straight edges, and their weights of the pin and the end, (k, 2)."""
         thickness = self.sheet.initial_thickness / self.prestretch
+        line = strip.mid_line(self.rest_position, self._share)
         layer = EDGE_LAYER * thickness if self.support == LOWER else 0.0
-        return strip.straight_edges(strip.mid_line(self.rest_position, self._share)[:, 0], layer)
+        return strip.straight_edges(line, layer, thickness)
 
     def respond(self, position: np.ndarray, v_squared: float) -> Response:
         """Return the response at ``position`` (2(n+1), 2) and V^2.

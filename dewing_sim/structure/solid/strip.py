@@ -7,6 +7,7 @@ import numpy as np
 from dewing_sim.machine.kernels import checked_kernel
 from dewing_sim.structure.sheet import Sheet
 
+STRAIGHT = 0.3              # of the thickness: as near to the pins lies the line of tension
 GROWTH = 1.5                # of element lengths away from the edges
 
 
@@ -30,12 +31,20 @@ def nodal_mass(length: np.ndarray, sheet: Sheet, density: float) -> np.ndarray:
     return np.repeat(station, 2)
 
 
-def straight_edges(x: np.ndarray, layer: float) -> tuple[int, np.ndarray, np.ndarray]:
-    """Return how many stations ``x`` (n+1,) lie within ``layer`` of an edge, with weights.
+def straight_edges(line: np.ndarray, layer: float, thickness: float,
+                   ) -> tuple[int, np.ndarray, np.ndarray]:
+    """Return how many stations of ``line`` (n+1, 2) lie within ``layer`` of an edge, with weights.
+
+    A long first element, which the tension turns, belongs to the layer too: all up to the last
+    station that is further from the pins than `STRAIGHT` times the ``thickness``.
 
     The weights (k, 2) put these k stations at the left and at the right on straight lines between
     the edge and the first station beyond.
     """
+    x, y = line.T
+    away = np.flatnonzero(np.abs(y[:y.size // 2]) > STRAIGHT * thickness)
+    if away.size:
+        layer = max(layer, float(x[away[-1] + 1]))
     inner = max(1, min(int(np.searchsorted(x, layer)), x.size // 2))
     left, right = x[:inner] / x[inner], (x[-1] - x[-inner:]) / (x[-1] - x[-1 - inner])
     return inner, np.stack([1.0 - left, left], axis=1), np.stack([1.0 - right, right], axis=1)

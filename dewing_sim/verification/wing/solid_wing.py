@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dewing_sim import parameters
+from dewing_sim.errors import RunFailed
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
@@ -47,11 +48,12 @@ class _Found:
 
 def compare(case: Case, voltages: list[float], progress: Callable | None = None,
             rest: Callable[[Wing], State] = Wing.rest, steps: int = STEPS,
-            ) -> Iterator[Difference]:
+            failures: dict[str, str] | None = None) -> Iterator[Difference]:
     """Yield the differences at the voltages with pins at the lower side and in the middle.
 
     Each wing rests under the voltage; then V^2 rises by `PULSE` for one step and what that adds is
-    followed over ``steps``. ``progress(done, total)`` counts wings.
+    followed over ``steps``. ``progress(done, total)`` counts wings. A wing that fails is put into
+    ``failures`` with its reason if there is such a mapping, and the others go on.
     """
     kinds = {'membrane': {'membrane.element': 'membrane'}} | {
         support: {'membrane.element': 'solid', 'membrane.support': support}
@@ -60,12 +62,19 @@ def compare(case: Case, voltages: list[float], progress: Callable | None = None,
     for voltage in voltages:
         found = {}
         for kind, changes in kinds.items():
-            wing = Wing(parameters.replace(case, changes | {'actuation.voltage': voltage}))
-            found[kind] = _measure(wing, rest(wing), steps)
+            try:
+                wing = Wing(parameters.replace(case, changes | {'actuation.voltage': voltage}))
+                found[kind] = _measure(wing, rest(wing), steps)
+            except RunFailed as error:
+                if failures is None:
+                    raise
+                failures[f'{kind} at {voltage:g} V'] = str(error)
             done += 1
             if progress:
                 progress(done, len(voltages) * len(kinds))
-        for support in (LOWER, MIDDLE):
+        for support in (LOWER, MIDDLE) if 'membrane' in found else ():
+            if support not in found:
+                continue
             yield _difference(support, voltage, found['membrane'], found[support])
 
 
