@@ -110,12 +110,14 @@ def parse_axes(texts: Sequence[str]) -> tuple[Axis, ...]:
 def _axis(text: str) -> Axis:
     key, equals, listed = text.partition('=')
     if not equals:
-        raise BadInput(f'--vary {text!r} is not of the form section.key=a,b,c')
+        raise BadInput(f'--vary {parameters.shown(text)} is not of the form section.key=a,b,c')
     values = tuple(parameters.parse_assignment(f'{key}={value}')[1]
                    for value in listed.split(','))
     for value in values:
+        if isinstance(value, (list, dict)):
+            raise BadInput(f'--vary {key}: {parameters.shown(value)} is not one value')
         if values.count(value) > 1:
-            raise BadInput(f'--vary {key}: {value} is given twice')
+            raise BadInput(f'--vary {key}: {parameters.shown(value)} is given twice')
     return Axis(key.strip(), values)
 
 

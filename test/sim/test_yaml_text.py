@@ -32,7 +32,10 @@ def test_absurd_yaml_ends_in_one_short_sentence(text, write, capsys):
         assert len(str(error.value)) < 2000
     assert cli.main(['simulate', '--case', write(text)]) == 2
     assert cli.main(['simulate', '--set', f'flow.velocity={text}']) == 2
-    assert capsys.readouterr().err.count('\n') == 2
+    for value in (text, '&a [*a],&b [*b]', f'{text},{text}'):
+        assert cli.main(['sweep', '--vary', f'flow.velocity={value}', '--duration', '0.1',
+                         '--out', 'never.nc']) == 2
+    assert capsys.readouterr().err.count('\n') == 5
 
 
 @settings(max_examples=200, deadline=None)

@@ -19,6 +19,7 @@ from dewing_sim import parameters
 from dewing_sim.build import build_reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.linear.model import Model
+from dewing_sim.records import bag_summary
 from dewing_sim.ros import harness, qos
 from dewing_sim.ros.node import SimulatorNode
 from dewing_sim.ros.recorder import RecorderNode
@@ -119,6 +120,8 @@ def test_the_records_and_a_bag_of_the_runs_give_the_same_matrices(session, model
     _, node = start(session, model, tmp_path, afterwards='exit')
     session.spin_until(lambda: node.exit_status == 0, PATIENCE)
     recorder.interrupt()
+    runs = bag_summary.summary(tmp_path / 'run.mcap')['runs']
+    assert len(runs) == 5 and all(run['steps_missing'] == 0 for run in runs)
     settings = parameters.load('sysid', Settings, SHORT)
     for path in (tmp_path / 'records.npz', tmp_path / 'run.mcap'):
         records, identity = sources.load(path)
