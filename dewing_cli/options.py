@@ -12,6 +12,7 @@ from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
 from dewing_sim.inputs.disturbance import DISTURBANCES
 from dewing_sim.machine.jobs import Workers
+from dewing_sim.numerals import apart, not_above
 from dewing_sim.parameters import Case, Numerics
 from dewing_sim.plugins import is_plugin
 
@@ -105,13 +106,24 @@ def one_of(option: str, name: str, table: dict) -> Any:
 def within(option: str, value: float, low: float, high: float, unit: str) -> float:
     """Return ``value`` if it lies from ``low`` to ``high``; raise `BadInput` otherwise."""
     if not low <= value <= high:
-        raise BadInput(f'{option} {value:g} is out of range: from {low:g} to {high:g} {unit}')
+        shown, nearest = apart(value, low if value < low else high)
+        first, last = (nearest, f'{high:g}') if value < low else (f'{low:g}', nearest)
+        raise BadInput(f'{option} {shown} is out of range: from {first} to {last} {unit}')
     return value
+
+
+def check_skip(skip: float | None, steps: int, dt: float, unit: str) -> None:
+    """Raise `BadInput` unless at least the last of ``steps`` is left to be averaged."""
+    if skip is not None and not (0.0 <= skip < (steps - 0.5) * dt):
+        most = not_above((steps - 1) * dt)
+        raise BadInput(f'--skip {skip:.10g} is out of range: from 0 to {most} {unit}, a time step '
+                       'before the end')
 
 
 def steps_of(duration: float, dt: float, unit: str) -> int:
     """Return the number of steps in ``duration``; raise `BadInput` if it is less than one."""
     if not (math.isfinite(duration) and duration >= dt):
-        raise BadInput(f'--duration {duration:g} {unit} is out of range: at least one time step '
-                       f'of {dt:g} {unit}')
+        shown, step = apart(duration, dt)
+        raise BadInput(f'--duration {shown} {unit} is out of range: at least one time step of '
+                       f'{step} {unit}')
     return round(duration / dt)

@@ -5,9 +5,9 @@
 SHORT, EXACT = 6, 17        # significant digits: at least, and those that give a float back
 
 
-def apart(value: float, bound: float) -> tuple[str, str]:
-    """Return both numbers with as many digits as they need to look different, if they are."""
-    for digits in range(SHORT, EXACT + 1):
+def apart(value: float, bound: float, short: int = SHORT) -> tuple[str, str]:
+    """Return both numbers, with more than ``short`` digits if they need them to differ."""
+    for digits in range(short, EXACT + 1):
         first, second = f'{value:.{digits}g}', f'{bound:.{digits}g}'
         if first != second:
             break

@@ -21,6 +21,7 @@ from dewing_sim.inputs.amplifier import Amplifier
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.sources import Motion, Pressure, Sources
 from dewing_sim.machine import compilation
+from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.rest import trim
@@ -176,5 +177,6 @@ def _require_tension(case: Case, slack_voltage: float) -> None:
     for name in ('voltage', 'voltage_limit'):
         value = getattr(case.actuation, name)
         if value >= slack_voltage:
-            raise BadInput(f'actuation.{name} = {value:g} V is out of range: the membrane loses '
-                           f'its tension at {slack_voltage:.4g} V')
+            shown, least = apart(value, slack_voltage, 4)
+            raise BadInput(f'actuation.{name} = {shown} V is out of range: the membrane loses '
+                           f'its tension at {least} V')

@@ -9,6 +9,7 @@ import numpy as np
 
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case, from_mapping
 from dewing_sim.scales import Scales
 from dewing_sysid import excitation
@@ -124,5 +125,7 @@ def _check_voltage(name: str, v_squared: np.ndarray, identity: Identity) -> None
     peak, limit, slack = np.sqrt([v_squared.max(), identity.v_squared_max,
                                   identity.v_squared_slack])
     if peak > min(limit, slack):
-        raise BadInput(f'run {name!r} peaks at {peak:.0f} V, above the admissible {limit:.0f} V '
+        shown, most = apart(peak, min(limit, slack), 4)
+        limit = most if limit < slack else f'{limit:.0f}'
+        raise BadInput(f'run {name!r} peaks at {shown} V, above the admissible {limit} V '
                        f'(the membrane is slack from {slack:.0f} V): take a smaller amplitude')

@@ -64,8 +64,7 @@ def _check(arguments: argparse.Namespace) -> int:
     if not is_plugin(arguments.engine):
         options.one_of('--grid', arguments.grid, dict.fromkeys(engines.GRIDS))
     steps = options.steps_of(arguments.duration, arguments.dt, 't*')
-    if arguments.skip is not None:
-        options.within('--skip', arguments.skip, 0.0, arguments.duration, 't*')
+    options.check_skip(arguments.skip, steps, arguments.dt, 't*')
     outputs.claim({'--json': arguments.json, '--dcp': arguments.dcp}, arguments.force)
     return steps
 

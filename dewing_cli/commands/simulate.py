@@ -13,6 +13,7 @@ from typing import Any, Iterator, NamedTuple
 from dewing_cli import options, outputs, results
 from dewing_cli.progress import Laps, bar, until_interrupted
 from dewing_sim.errors import BadInput
+from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case
 
 
@@ -71,8 +72,7 @@ def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
         settings = parameters.load(arguments.controller, ControllerSettings)
     steps = options.steps_of(arguments.duration, case.numerics.time_step, 's')
     options.within('--every', arguments.every, 1, 1_000_000, 'steps')
-    if arguments.skip is not None:
-        options.within('--skip', arguments.skip, 0.0, arguments.duration, 's')
+    options.check_skip(arguments.skip, steps, case.numerics.time_step, 's')
     outputs.claim({'--out': arguments.out, '--json': arguments.json,
                    '--save-state': arguments.save_state}, arguments.force,
                   options.read_files(arguments.case, arguments.controller))
@@ -86,8 +86,9 @@ def _check_voltage(voltage: float | None, case: Case) -> None:
     slack = loss_of_tension(case)**0.5
     for name, value in (('--voltage', voltage), ('actuation.voltage', case.actuation.voltage)):
         if value is not None and value >= slack:
-            raise BadInput(f'{name} {value:g} V is out of range: the membrane loses its tension '
-                           f'at {slack:.0f} V')
+            shown, least = apart(value, slack, 4)
+            raise BadInput(f'{name} {shown} V is out of range: the membrane loses its tension '
+                           f'at {least} V')
     if voltage is not None:
         options.within('--voltage', voltage, 0.0, case.actuation.voltage_limit, 'V')
         _warn_of_breakdown(voltage, case)

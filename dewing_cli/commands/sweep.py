@@ -64,8 +64,8 @@ def _check(arguments: argparse.Namespace) -> Any:
     skip = 0.5 * arguments.duration if arguments.skip is None else arguments.skip
     sweep = Sweep(case, parse_axes(arguments.vary), arguments.duration, skip)
     for point in sweep.points:
-        options.steps_of(arguments.duration, point.case.numerics.time_step, 's')
-    options.within('--skip', skip, 0.0, 0.99 * arguments.duration, 's')
+        dt = point.case.numerics.time_step
+        options.check_skip(arguments.skip, options.steps_of(arguments.duration, dt, 's'), dt, 's')
     options.workers(arguments, jobs.cores)
     reads = options.read_files(arguments.case)
     outputs.claim({'--json': arguments.json}, arguments.force, reads)

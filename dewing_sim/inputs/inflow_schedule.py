@@ -11,6 +11,7 @@ import numpy as np
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.trajectory import Course, Differentiated, Trajectory
+from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case, Gust, RigidMotion
 from dewing_sim.scales import Scales
 
@@ -49,7 +50,8 @@ class InflowSchedule:
                 ('rigid_motion', found.motion_course, 2.0 * math.pi * max(
                     abs(found.heave), abs(found.pitch)) / found.motion_course.duration)):
             if course.shape != 'none' and amplitude > STRONGEST:
-                raise BadInput(f'{name}: it reaches {amplitude:.3g} free-stream speeds, '
+                raise BadInput(f'{name}: it reaches {apart(amplitude, STRONGEST, 3)[0]} '
+                               'free-stream speeds, '
                                f'at most {STRONGEST:g}')
         return found
 

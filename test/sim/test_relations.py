@@ -82,6 +82,7 @@ def test_the_shortest_courses_keep_their_content(offset):
 def test_numbers_in_a_sentence_differ_as_the_values_do():
     assert apart(1250.0000001, 1250.0) == ('1250.0000001', '1250')
     assert apart(2.0, 1.0) == ('2', '1')
+    assert apart(1300.4, 1300.2, 4) == ('1300.4', '1300.2')
     third = 1.0 / 3.0
     assert float(not_above(third)) <= third <= float(not_below(third))
     assert float(not_above(third)) == pytest.approx(third, rel=1.0e-5)
