@@ -87,3 +87,11 @@ def test_without_a_load_there_is_no_difference_to_report(tmp_path):
     assert cli.main([*COARSE, '--lift', '0', '--json', 'm.json']) == 0
     found = json.loads((tmp_path / 'm.json').read_text())
     assert found['camber_membrane_passive'] == 0.0 and 'largest_difference_solid' not in found
+
+
+def test_elements_are_not_compared_in_a_wing_without_camber(capsys):
+    assert cli.main(['material', '--coupled', '--quiet', '--voltages', '0', *(
+        f'--set={value}' for value in (
+            'membrane.elements=16', 'numerics.grid=fast', 'numerics.trim_time=0.05',
+            'flow.angle_of_attack_deg=0.0'))]) == 2
+    assert 'camber of the membrane: the passive camber is' in capsys.readouterr().err

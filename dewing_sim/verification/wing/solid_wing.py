@@ -9,6 +9,7 @@ import numpy as np
 
 from dewing_sim import parameters
 from dewing_sim.errors import RunFailed
+from dewing_sim.identity import require_reference
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
@@ -53,7 +54,8 @@ def compare(case: Case, voltages: list[float], progress: Callable | None = None,
 
     Each wing rests under the voltage; then V^2 rises by `PULSE` for one step and what that adds is
     followed over ``steps``. ``progress(done, total)`` counts wings. A wing that fails is put into
-    ``failures`` with its reason if there is such a mapping, and the others go on.
+    ``failures`` with its reason if there is such a mapping, and the others go on. Raises
+    `BadInput` for a wing without camber, in which nothing could be measured.
     """
     kinds = {'membrane': {'membrane.element': 'membrane'}} | {
         support: {'membrane.element': 'solid', 'membrane.support': support}
@@ -69,6 +71,8 @@ def compare(case: Case, voltages: list[float], progress: Callable | None = None,
                 if failures is None:
                     raise
                 failures[f'{kind} at {voltage:g} V'] = str(error)
+            if kind == 'membrane' and kind in found:
+                require_reference('camber of the membrane', found[kind].rest.camber_mean, case)
             done += 1
             if progress:
                 progress(done, len(voltages) * len(kinds))
