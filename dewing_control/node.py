@@ -47,9 +47,12 @@ class ControllerNode(Node):
         self.add_post_set_parameters_callback(self._declare_anew)
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
-        self.create_subscription(JointState, 'measurement', self._on_measurement, qos.LATEST)
+        self._measurement = self.create_subscription(
+            JointState, 'measurement', self._on_measurement, qos.LATEST)
         self.create_service(SetBool, '~/enable', self._on_enable)
-        self.create_timer(1.0, self.status.report, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._attended = False                      # all listeners of command were there
+        self._heard = False                         # a measurement came in the last second
+        self.create_timer(1.0, self._watch, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _on_case(self, message: String):
         try:
@@ -62,8 +65,9 @@ class ControllerNode(Node):
             self.status.set(messages.WARN, str(error))
 
     def _on_measurement(self, message: JointState):
-        """Answer; a measurement that comes before the case will be sent again."""
-        if self._law is None:
+        """Answer; a measurement that comes before case and listeners will be sent again."""
+        self._heard = True
+        if self._law is None or self._absent():
             return
         stamp = messages.from_stamp(message.header.stamp)
         if stamp != self._stamp:
@@ -78,7 +82,29 @@ class ControllerNode(Node):
                 return
             self._stamp = stamp
             self._say_running()
-        qos.publish(self._command, messages.command(self._v_squared, message.header.stamp))
+        if not qos.publish(self._command,
+                           messages.command(self._v_squared, message.header.stamp)):
+            self.status.set(messages.WARN, 'a listener of command does not keep up')
+
+    def _absent(self) -> int:
+        """Return how many listeners of command are waited for, none once all have been there."""
+        if not self._attended:
+            wanted = self.settings.command.subscribers
+            absent = max(wanted - self._command.get_subscription_count(), 0)
+            self._attended = not absent
+        return 0 if self._attended else absent
+
+    def _watch(self):
+        """Look for a measurement that nobody told of, and say what is waited for."""
+        for message in qos.waiting(self._measurement):
+            self._on_measurement(message)
+        if self._law is not None and self._absent():
+            self.status.set(messages.OK, f'waiting for {self._absent()} of '
+                            f'{self.settings.command.subscribers} listeners of command')
+        elif self._law is not None and self.status.level == messages.OK and not self._heard:
+            self.status.set(messages.OK, 'waiting for a measurement')
+        self._heard = False
+        self.status.report()
 
     def _decide(self, measurement, begin: bool):
         if begin or self._stamp < 0:

@@ -124,7 +124,8 @@ def record(demo: Demo, name: str, stop: Stop) -> None:
         start('dewing_sim.ros.recorder', {'output': demo.bag(name).resolve()})
         if closed:
             start('dewing_control.node', {
-                name: value for name, value, _ in parameters.leaves(demo.settings)})
+                name: value for name, value, _ in parameters.leaves(demo.settings)}
+                | {'command.subscribers': 2})
         simulator = start('dewing_sim.ros.node', {
             'case': (demo.out / 'case.yaml').resolve(), 'run.duration': demo.duration,
             'run.mode': 'lockstep' if closed else 'free', 'run.subscribers': 2 if closed else 1})

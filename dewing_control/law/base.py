@@ -35,6 +35,8 @@ class Command:
     period_steps: int = count('steps of the plant in one control period', 1, 100000)
     hold_steps: int = count(
         'unusable measurements in a row answered with the last V^2, zero afterwards', 0, 1000000)
+    subscribers: int = count(
+        'listeners to command to wait for before the first answer', 0, 100, default=1)
 
 
 @dataclass(frozen=True)

@@ -44,9 +44,9 @@ class SimulatorNode(Node):
         self.exit_status: int | None = None
         self.status = Status(self, 'waiting for a controller and listeners', self._values)
         self._locked = self.run.mode == 'lockstep'
-        self._paused, self._pending, self._granted = False, None, 0
+        self._paused = self._started = self._overdue = False
+        self._pending, self._granted = None, 0
         self._began = self._created = monotonic()
-        self._started, self._overdue = False, False
         self._deadlines = Deadlines(
             self.plant.dt / self.run.rate if self.run.mode == 'realtime' else 0.0)
         self._connect()
@@ -59,8 +59,8 @@ class SimulatorNode(Node):
     def _connect(self):
         self._question = Question(self, self.run.resend_period)
         self._identity = self.create_publisher(String, 'case', qos.LATCHED)
-        self._telemetry = Telemetry(self, self.case, self.run, self.plant.dt,
-                                    self.lockstep.outputs)
+        self._telemetry = Telemetry(
+            self, self.case, self.run, self.plant.dt, self.lockstep.outputs)
         self._command = self.create_subscription(
             JointState, 'command', self._on_command, qos.LATEST)
         self.served = Services(self)
@@ -73,8 +73,7 @@ class SimulatorNode(Node):
         self._identity.publish(String(data=self.identity.to_yaml()))
 
     def _log_trim(self, done: int, total: int):
-        self.get_logger().info(f'trimming the wing: step {done} of {total}',
-                               throttle_duration_sec=2.0)
+        self.get_logger().info(f'trimming: step {done} of {total}', throttle_duration_sec=2.0)
 
     def _watch(self):
         """Start when everybody is there; ask again and give up when no answer comes."""
@@ -84,19 +83,19 @@ class SimulatorNode(Node):
         if not self._started:
             self._start_when_ready(now)
         elif self._locked and self._pending is None:
+            for message in qos.waiting(self._command):
+                self._on_command(message)
             self._insist(now)
 
     def _start_when_ready(self, now: float):
         controllers = self._command.get_publisher_count() if self._locked else 1
-        listeners = self._question.listeners
-        if controllers and listeners >= self.run.subscribers:
+        if controllers and self._question.listeners >= self.run.subscribers:
             self._started, self._began = True, now
             self._ask()
             self._resume()
         elif now - self._created > self.run.discovery_timeout:
-            self._finish(1, f'{controllers} controllers and {listeners} listeners within '
-                            f'{self.run.discovery_timeout:g} s; at least 1 and '
-                            f'{self.run.subscribers} are needed')
+            self._finish(1, f'waited for {self.run.discovery_timeout:g} s: '
+                         + self._question.waiting(controllers, self.run.subscribers))
 
     def _resume(self):
         self.status.set(messages.OK, 'paused' if self._paused else 'running')
@@ -185,7 +184,7 @@ class SimulatorNode(Node):
             sentence += '; ' + self.served.save()[1]
         self._pace.cancel()
         self.status.set(messages.ERROR if status else messages.OK, sentence)
-        qos.deliver(self.publishers, self.run.delivery_timeout)
+        self.status.deliver(self.publishers, self.run.delivery_timeout)
         self.exit_status = status
 
     def interrupt(self):
@@ -194,9 +193,12 @@ class SimulatorNode(Node):
             self._finish(0, f'interrupted at {self.lockstep.outputs.time:.6f} s')
 
     def _report(self):
-        controllers = self._command.get_publisher_count()
+        controllers, wanted = self._command.get_publisher_count(), self.run.subscribers
+        if not self._started:
+            self.status.set(messages.OK, self._question.waiting(controllers, wanted))
         caution = (f'{controllers} controllers: the first answer to a measurement counts'
-                   if controllers > 1 else self.built.caution(self.lockstep.state))
+                   if controllers > 1 else self._question.gone(wanted * self._started)
+                   or self.built.caution(self.lockstep.state))
         if self.status.level == messages.OK and caution:
             self.status.set(messages.WARN, caution)
         else:

@@ -5,10 +5,11 @@
 The loop (``measurement``, ``command``) keeps every message until all reliable listeners have
 taken it. Fast DDS keeps `KEPT` on the side of the publisher and as many on that of a keep-all
 listener; when both are full, the publisher waits, so that nobody loses a step of the loop. A
-listener that died holds it up for 20 s at most, the lease of its participant.
+listener that died or does not run is given up 20 s after its last sign of life, the lease of its
+participant: from then on nobody waits for it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from time import monotonic
 from typing import Any
 
@@ -17,6 +18,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 KEPT = 5000                 # messages, max_samples of Fast DDS
+TELL = 2.0                  # s of waiting after which one says so
 PATIENCE = 30.0             # s, longer than the lease of a participant that died
 
 LOOP = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -52,9 +54,30 @@ def publish(publisher, message: Any) -> bool:
     return True
 
 
-def deliver(publishers: Iterable[Any], patience: float = PATIENCE) -> None:
-    """Wait until the reliable listeners have all messages or are gone, ``patience`` s at most."""
-    deadline = monotonic() + patience
-    for publisher in publishers:
-        while monotonic() < deadline and not publisher.wait_for_all_acked(Duration(seconds=0.2)):
-            pass                # in short waits, between which a signal is heard
+def waiting(subscription) -> Iterator[Any]:
+    """Yield the messages that wait in the queue of ``subscription``, told of or not.
+
+    An executor of events knows of a message only by being told. After one lost notice it would
+    stay one message behind for good, and answer every question with the answer before it.
+    """
+    queue = subscription.handle
+    with queue:
+        while taken := queue.take_message(subscription.msg_type, subscription.raw):
+            yield taken[0]
+
+
+def deliver(publishers: Iterable[Any], patience: float = PATIENCE,
+            slow: Callable[[str], None] = lambda topic: None) -> None:
+    """Wait until the reliable listeners have all messages or are gone, ``patience`` s at most.
+
+    ``slow`` is told of the topic whose listeners first take longer than `TELL` s.
+    """
+    began, told = monotonic(), False
+    for publisher in list(publishers):
+        while not publisher.wait_for_all_acked(Duration(seconds=0.2)):
+            waited = monotonic() - began        # in short waits, between which a signal is heard
+            if waited > patience:
+                return
+            if waited > TELL and not told:
+                told = True
+                slow(publisher.topic_name)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a node says of itself on ``/diagnostics``: a level, a sentence and some numbers."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from dewing_sim.ros import messages, qos
@@ -29,6 +29,12 @@ class Status:
         self.report()
         if level != messages.OK:
             self._node.get_logger().warning(sentence)
+
+    def deliver(self, publishers: Iterable[Any], patience: float) -> None:
+        """Wait for slow listeners as `qos.deliver` does, and say for which."""
+        qos.deliver(publishers, patience, lambda topic: self.set(
+            self.level, f'{self.sentence}; listeners of {topic} are waited for, '
+                        f'{patience:g} s at most'))
 
     def report(self) -> None:
         """Publish what is in force."""

@@ -29,7 +29,7 @@ def test_loop_over_dds_is_bit_identical_to_the_loop_offline(tmp_path, kind, targ
         settings = {'kind': kind, 'model': str(ros.model), 'reference.target': target}
         path = ros.recorder()
         simulator = ros.simulator(duration=0.12, subscribers=2)
-        ros.start('controller', settings)
+        ros.controller(settings)
         assert simulator.wait(PATIENCE) == 0, ros.said('simulator') + ros.said('controller')
     recorded, expected = bag.series(path, '/dewing/measurement'), offline(1200, settings)
     for name, values in expected.items():
@@ -55,7 +55,7 @@ def test_a_law_from_outside_flies_over_dds_bit_for_bit(tmp_path, monkeypatch):
     with graph(tmp_path) as ros:
         path = ros.recorder()
         simulator = ros.simulator(duration=0.05, subscribers=2)
-        ros.start('controller', settings)
+        ros.controller(settings)
         assert simulator.wait(PATIENCE) == 0, ros.said('simulator') + ros.said('controller')
     recorded, expected = bag.series(path, '/dewing/measurement'), offline(500, settings)
     for name, values in expected.items():

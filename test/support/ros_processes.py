@@ -24,19 +24,34 @@ PATIENCE = 300.0            # s, for a machine that is busy with other things
 FAREWELL = 60.0             # s, for a process to end before it is killed
 
 
+# Without it, DDS gives up who does not run for 20 s; a busy machine needs longer for some tests.
+PATIENT = """<?xml version="1.0" encoding="UTF-8" ?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="patient" is_default_profile="true"><rtps><builtin><discovery_config>
+    <leaseDuration><sec>3600</sec></leaseDuration>
+  </discovery_config></builtin></rtps></participant>
+</profiles>
+"""
+
+
 class Graph:
     """Starts the executables in one ROS domain, in ``folder``, and stops what is left."""
 
-    def __init__(self, domain, folder):
+    def __init__(self, domain, folder, patient=False):
+        """Let nobody be given up for not running if ``patient``."""
         self.domain, self.folder, self.processes = domain, folder, []
         folder.mkdir(exist_ok=True)
+        self.env = harness.environment(domain, str(folder))
+        if patient:
+            (folder / 'patient.xml').write_text(PATIENT)
+            self.env['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(folder / 'patient.xml')
         self.model = folder / 'model.npz'
         reduced.save(self.model, first_mode(disturbance=0.05), overwrite=True)
 
     def start(self, name, settings=None, **options):
         log = open(self.folder / f'{name}.txt', 'a')
         process = harness.start_node(
-            MODULES[name], settings or {}, harness.environment(self.domain, str(self.folder)),
+            MODULES[name], settings or {}, self.env,
             cwd=self.folder, stdout=log, stderr=log, **options)
         self.processes.append(process)
         return process
@@ -44,6 +59,10 @@ class Graph:
     def simulator(self, **run):
         settings = {'run.plant': 'reduced', 'model': self.model}
         return self.start('simulator', settings | {f'run.{key}': run[key] for key in run})
+
+    def controller(self, settings=None):
+        """Start a controller that answers once simulator and recorder listen."""
+        return self.start('controller', {'command.subscribers': 2} | (settings or {}))
 
     def recorder(self):
         self.start('recorder', {'output': self.folder / 'run.mcap'})
@@ -59,9 +78,9 @@ class Graph:
 
 
 @contextmanager
-def graph(folder):
+def graph(folder, patient=False):
     with harness.reserved_domain() as domain:
-        result = Graph(domain, folder)
+        result = Graph(domain, folder, patient)
         try:
             yield result
         finally:

@@ -20,7 +20,7 @@ def run_closed_loop(folder, steps):
     with graph(folder) as ros:
         path = ros.recorder()
         simulator = ros.simulator(duration=1.0e-4 * steps, subscribers=2)
-        ros.start('controller')
+        ros.controller()
         assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
     return path
 
@@ -70,10 +70,10 @@ def test_a_restarted_controller_carries_on_without_a_bump(tmp_path):
     with graph(tmp_path) as ros:
         path = ros.recorder()
         simulator = ros.simulator(subscribers=2, duration=0.3, delivery_timeout=5.0)
-        controller = ros.start('controller')
+        controller = ros.controller()
         wait_until(lambda: simulated_time(path) > 0.06)
         kill(controller)
-        ros.start('controller')
+        ros.controller()
         assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
     run = bag.series(path, '/dewing/measurement')
     assert len(run['time']) == 3001
@@ -87,7 +87,7 @@ def test_signals_end_every_process_cleanly(tmp_path, number):
     with graph(tmp_path) as ros:
         path = ros.recorder()
         ros.simulator(subscribers=2)
-        ros.start('controller')
+        ros.controller()
         wait_until(lambda: simulated_time(path) > 0.01)
         for process in reversed(ros.processes):
             process.send_signal(number)

@@ -103,7 +103,7 @@ def test_a_killed_recorder_leaves_a_readable_bag(tmp_path):
     with graph(tmp_path) as ros:
         path = ros.recorder()
         ros.simulator(subscribers=2, delivery_timeout=0.1)
-        ros.start('controller')
+        ros.controller()
         wait_until(lambda: simulated_time(path) > 0.05)
         kill(ros.processes[0])
     assert np.all(np.diff(bag.series(path, '/dewing/measurement')['time']) < 1.5e-4)
