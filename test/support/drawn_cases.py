@@ -22,7 +22,8 @@ def mappings(draw, instead=MappingProxyType({})):
     mapping = {}
     for name, field in parameters.fields(Case):
         section, key = name.split('.')
-        mapping.setdefault(section, {})[key] = draw(instead.get(name) or _of(field))
+        mapping.setdefault(section, {})[key] = draw(
+            instead[name] if name in instead else _of(field))
     for bound, prefix in _bounds():
         _keep(mapping, bound, prefix)
     return mapping
