@@ -1,10 +1,9 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whole cases drawn at random within their ranges: a result, or one sentence; never a traceback."""
+"""Cases drawn at random within their ranges: a result or one sentence, never a traceback."""
 
 import json
 import math
-from pathlib import Path
 
 import pytest
 import yaml
@@ -64,7 +63,8 @@ def folder(tmp_path_factory):
 @settings(max_examples=60, deadline=None, derandomize=True, database=None,
           suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large,
                                  HealthCheck.function_scoped_fixture])
-@given(mapping=mappings(SMALL), steps=st.integers(1, 4), skipped=st.sampled_from([0, 0, 0, 0, 1, 4]),
+@given(mapping=mappings(SMALL), steps=st.integers(1, 4),
+       skipped=st.sampled_from([0, 0, 0, 0, 1, 4]),
        voltage=st.one_of(st.none(), st.none(), st.floats(0.0, 500.0)))
 def test_a_case_gives_finite_numbers_or_one_sentence(
         folder, capsys, monkeypatch, mapping, steps, skipped, voltage):
