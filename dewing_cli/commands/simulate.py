@@ -3,7 +3,9 @@
 """Simulate a wing offline, under a constant voltage or under a controller.
 
 The run starts from the trimmed rest state of the case. A --voltage other than that of the case is
-a step at t = 0. Averages, amplitudes and spectra leave out the first --skip seconds.
+a step at t = 0. Averages, amplitudes and spectra leave out the first --skip seconds. The end that
+Ctrl-C, SIGTERM or SIGHUP asks for keeps the run up to there. For SIGKILL and power cuts, what is
+there is in OUT.partial, written every few seconds until OUT is.
 """
 
 import argparse
@@ -42,10 +44,11 @@ def run(arguments: argparse.Namespace) -> None:
 
     from dewing_cli.run_metrics import Watch
     from dewing_sim.records.history import Recorder
+    from dewing_sim.records.partial import Partial
     with bar('preparing', 's', arguments.quiet) as show:
         loop = _prepare(case, arguments, settings, steps, show)
     recorder, laps, state = Recorder(loop.plant.case, arguments.every), Laps(), None
-    watch = Watch(loop.plant.fluid, steps)
+    watch, partial = Watch(loop.plant.fluid, steps), Partial(arguments.out, recorder)
     try:
         with bar('simulating', 's', arguments.quiet) as show:
             for instant in until_interrupted(loop.steps):
@@ -53,6 +56,7 @@ def run(arguments: argparse.Namespace) -> None:
                 recorder.add(outputs)
                 watch.add(state.flow)
                 laps.add()
+                partial.keep()
                 show(len(recorder), steps, outputs.time)
     finally:
         if len(recorder):
@@ -60,11 +64,13 @@ def run(arguments: argparse.Namespace) -> None:
             history = recorder.history()
             metrics = _metrics(arguments, case, loop, history, laps) | watch.metrics()
             _deliver(arguments, case, metrics, history)
+            partial.remove()
 
 
 def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
     """Return case, controller settings (or None) and steps, all checked before any work."""
     case = options.load_case(arguments)
+    from dewing_sim.records.partial import path_of
     settings = None
     if arguments.controller:
         from dewing_control.settings import ControllerSettings
@@ -74,7 +80,8 @@ def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
     options.within('--every', arguments.every, 1, 1_000_000, 'steps')
     options.check_skip(arguments.skip, steps, case.numerics.time_step, 's')
     outputs.claim({'--out': arguments.out, '--json': arguments.json,
-                   '--save-state': arguments.save_state}, arguments.force,
+                   '--save-state': arguments.save_state, 'the run so far':
+                   path_of(arguments.out)}, arguments.force,
                   options.read_files(arguments.case, arguments.controller))
     _check_voltage(arguments.voltage, case)
     return case, settings, steps

@@ -1,0 +1,61 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""What SIGKILL at any moment leaves behind: everything that had been kept, readable."""
+
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dewing_cli import main as cli
+from dewing_sim.machine.signals import kill
+from dewing_sim.records.history import History
+
+MOMENTS = random.Random(14)         # s after there is something to keep
+PATIENCE = 300.0
+SMALL = ['--set', 'numerics.grid=fast', '--set', 'numerics.trim_time=0.1', '--quiet']
+OFTEN = """
+import sys
+from dewing_sim.records import partial
+partial.Partial.__init__.__defaults__ = (0.05,)
+from dewing_cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures('own_folder')]
+
+
+def killed(path, *arguments, code=OFTEN):
+    """Kill the command at a random moment after ``path`` has appeared."""
+    process = subprocess.Popen([sys.executable, '-c', code, *arguments], start_new_session=True)
+    try:
+        deadline = time.monotonic() + PATIENCE
+        while not Path(path).exists():
+            assert process.poll() is None and time.monotonic() < deadline
+            time.sleep(0.01)
+        time.sleep(MOMENTS.uniform(0.0, 0.5))
+    finally:
+        kill(process)
+
+
+def test_a_killed_simulation_leaves_what_it_had_and_is_not_written_over(capsys):
+    arguments = ['simulate', *SMALL, '--duration', '50.0', '--out', 'run.npz']
+    killed('run.npz.partial', *arguments)
+    run = History.load('run.npz.partial')
+    assert len(run) > 0 and np.all(np.diff(run.time) > 0.0) and not Path('run.npz').exists()
+    assert cli.main(arguments) == 2
+    assert 'run.npz.partial exists; --force writes over it' in capsys.readouterr().err
+    short = ['simulate', *SMALL, '--duration', '0.002', '--out', 'run.npz', '--force']
+    assert cli.main(short) == 0
+    assert Path('run.npz').exists() and not Path('run.npz.partial').exists()
+
+
+def test_a_killed_sweep_leaves_its_points(capsys):
+    import xarray
+    points = ['--vary', 'numerics.trim_time=0.1,40.0', '--jobs', '1', '--out', 'sweep.nc']
+    killed('sweep.nc', 'sweep', *SMALL, '--duration', '0.003', *points)
+    assert xarray.load_dataset('sweep.nc').status.values.tolist()[0] == 1
