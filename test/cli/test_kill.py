@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What SIGKILL at any moment leaves behind: everything that had been kept, readable."""
 
+import os
 import random
 import subprocess
 import sys
@@ -26,15 +27,26 @@ from dewing_cli.main import main
 sys.exit(main(sys.argv[1:]))
 """
 
+TINY = """
+import sys
+from dewing_cli.main import main
+from dewing_cli.paper import plan
+from paper_runs import TINY
+plan.QUICK = TINY
+sys.exit(main(sys.argv[1:]))
+"""
+
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures('own_folder')]
 
 
-def killed(path, *arguments, code=OFTEN):
-    """Kill the command at a random moment after ``path`` has appeared."""
-    process = subprocess.Popen([sys.executable, '-c', code, *arguments], start_new_session=True)
+def killed(pattern, *arguments, code=OFTEN):
+    """Kill the command at a random moment after a file of ``pattern`` has appeared."""
+    process = subprocess.Popen(
+        [sys.executable, '-c', code, *arguments], start_new_session=True,
+        env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
     try:
         deadline = time.monotonic() + PATIENCE
-        while not Path(path).exists():
+        while not list(Path().glob(pattern)):
             assert process.poll() is None and time.monotonic() < deadline
             time.sleep(0.01)
         time.sleep(MOMENTS.uniform(0.0, 0.5))
@@ -59,3 +71,14 @@ def test_a_killed_sweep_leaves_its_points(capsys):
     points = ['--vary', 'numerics.trim_time=0.1,40.0', '--jobs', '1', '--out', 'sweep.nc']
     killed('sweep.nc', 'sweep', *SMALL, '--duration', '0.003', *points)
     assert xarray.load_dataset('sweep.nc').status.values.tolist()[0] == 1
+
+
+def test_a_killed_paper_leaves_its_finished_runs():
+    killed('out/runs/*.npz', 'paper', '--quick', '--quiet', '--jobs', '1', '--out', 'out',
+           code=TINY)
+    kept = list(Path('out/runs').glob('[!.]*.npz'))
+    assert kept
+    for path in kept:
+        with np.load(path, allow_pickle=False) as file:
+            assert all(file[name] is not None for name in file.files)
+    assert not Path('out/report.html').exists()

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags: complete, self-describing, readable by others, and after a kill."""
 
+import random
+import time
+
 import numpy as np
 import pytest
 from ros_processes import PATIENCE, graph, simulated_time, wait_until
@@ -105,6 +108,7 @@ def test_a_killed_recorder_leaves_a_readable_bag(tmp_path):
         ros.simulator(subscribers=2, delivery_timeout=0.1)
         ros.controller()
         wait_until(lambda: simulated_time(path) > 0.05)
+        time.sleep(random.Random(14).uniform(0.0, 0.5))
         kill(ros.processes[0])
     assert np.all(np.diff(bag.series(path, '/dewing/measurement')['time']) < 1.5e-4)
     assert simulated_time(path) > 0.05
