@@ -12,9 +12,9 @@ from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
 from dewing_sim.inputs.disturbance import DISTURBANCES
 from dewing_sim.machine.jobs import Workers
-from dewing_sim.numerals import apart, not_above
 from dewing_sim.parameters import Case, Numerics
-from dewing_sim.plugins import is_plugin
+from dewing_sim.schema.numerals import apart, not_above
+from dewing_sim.schema.plugins import is_plugin
 
 NUMERICS = {'engine': 'numerics.engine', 'grid': 'numerics.grid', 'dt': 'numerics.time_step'}
 

@@ -14,9 +14,10 @@ from typing import Any
 
 from dewing_control.law import registry
 from dewing_control.law.base import Command, Law, Reference
-from dewing_sim import parameters, plugins
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.parameters import choice, text
+from dewing_sim.schema import plugins
 
 
 class _ByKind:

@@ -6,13 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from dewing_sim import parameters, plugins
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
 from dewing_sim.fluid.base import Monitor
 from dewing_sim.identity import Identity
 from dewing_sim.linear import reduced
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Plant
+from dewing_sim.schema import plugins
 from dewing_sim.settings import SimulatorSettings
 
 

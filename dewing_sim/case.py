@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from dewing_sim.fluid import engines
-from dewing_sim.relations import Bound
 from dewing_sim.schema import Numbers, choice, count, numbers, real
+from dewing_sim.schema.relations import Bound
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,12 @@ from typing import Any
 
 import yaml
 
-from dewing_sim import yaml_text
 from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Case, from_mapping
 from dewing_sim.plant import Outputs, Plant, units_of
 from dewing_sim.quantities import Absent, schema
 from dewing_sim.scales import Scales
-from dewing_sim.schema import shown
+from dewing_sim.schema import shown, yaml_text
 
 LEAST = 1.0e-3          # of y_ref: a smaller camber is no reference
 DOUBTFUL = 1.0e-4       # chords: a larger camber is one whatever y_ref

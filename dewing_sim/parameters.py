@@ -12,7 +12,6 @@ from typing import Any, Mapping
 
 import yaml
 
-from dewing_sim import yaml_text
 from dewing_sim.case import (
     Actuation,
     Case,
@@ -40,6 +39,7 @@ from dewing_sim.schema import (
     shown,
     text,
     to_mapping,
+    yaml_text,
 )
 
 __all__ = [

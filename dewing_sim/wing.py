@@ -21,11 +21,11 @@ from dewing_sim.inputs.amplifier import Amplifier
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.sources import Motion, Pressure, Sources
 from dewing_sim.machine import compilation
-from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.rest import trim
 from dewing_sim.scales import Scales
+from dewing_sim.schema.numerals import apart
 from dewing_sim.state import State
 from dewing_sim.structure import elements
 from dewing_sim.structure.dynamics.step import Operator

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import signal as dsp
 
 from dewing_sim.errors import BadInput
-from dewing_sim.numerals import apart, not_above
+from dewing_sim.schema.numerals import apart, not_above
 
 REGISTER_BITS = 11                      # the binary sequence repeats after 2^11 - 1 bits
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
-from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case, from_mapping
 from dewing_sim.scales import Scales
+from dewing_sim.schema.numerals import apart
 from dewing_sysid import excitation
 from dewing_sysid.experiment import MODAL, STANDARD, Record, unit
 from dewing_sysid.settings import Settings

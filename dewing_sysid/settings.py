@@ -5,7 +5,7 @@
 from dataclasses import dataclass
 
 from dewing_sim.parameters import choice, count, real, text
-from dewing_sim.relations import Bound
+from dewing_sim.schema.relations import Bound
 
 
 @dataclass(frozen=True)

@@ -75,7 +75,7 @@ def _controllers(text: str | None, kind: str) -> tuple:
     """Return who is compared; laws from outside go by their ``kind``."""
     from dewing_control.law.registry import of_kind
     from dewing_control.trial.comparison import CONTROLLERS
-    from dewing_sim.plugins import is_plugin
+    from dewing_sim.schema.plugins import is_plugin
     outside = tuple(filter(is_plugin, [kind] if text is None else text.split(',')))
     for name in outside:
         of_kind(name)                       # a law that cannot be used stops it here

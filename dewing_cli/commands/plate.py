@@ -15,7 +15,7 @@ from dewing_cli import options, outputs, results
 from dewing_cli.progress import Laps, bar, until_interrupted
 from dewing_sim.files import new_file
 from dewing_sim.fluid import engines
-from dewing_sim.plugins import is_plugin
+from dewing_sim.schema.plugins import is_plugin
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

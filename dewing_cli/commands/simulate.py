@@ -15,8 +15,8 @@ from typing import Any, Iterator, NamedTuple
 from dewing_cli import options, outputs, results
 from dewing_cli.progress import Laps, bar, until_interrupted
 from dewing_sim.errors import BadInput
-from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case
+from dewing_sim.schema.numerals import apart
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

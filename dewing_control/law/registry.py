@@ -20,10 +20,11 @@ from dewing_control.law.periodic import Periodic
 from dewing_control.law.pid import Pid
 from dewing_control.model import design
 from dewing_control.model.design import Design
-from dewing_sim import parameters, plugins
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
 from dewing_sim.plant import measurement_type
+from dewing_sim.schema import plugins
 
 LAWS: dict[str, type[Law]] = {law.kind: law for law in (Pid, Periodic, Lqg, Mpc)}
 TRIED = 3                   # steps in which any gain that is not finite has reached V^2

@@ -9,10 +9,10 @@ engine from outside.  The class says all else, see `base.Fluid`.
 
 from typing import TYPE_CHECKING
 
-from dewing_sim import plugins
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid import conformal, finite_volume
 from dewing_sim.machine.memory import keep_freed_arrays
+from dewing_sim.schema import plugins
 
 if TYPE_CHECKING:
     from dewing_sim.fluid.base import Fluid

@@ -11,9 +11,9 @@ import numpy as np
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.trajectory import Course, Differentiated, Trajectory
-from dewing_sim.numerals import apart
 from dewing_sim.parameters import Case, Gust, RigidMotion
 from dewing_sim.scales import Scales
+from dewing_sim.schema.numerals import apart
 
 STRONGEST = 1.0         # gust or motion over free-stream speed
 SHARP = 0.1             # of a time step, over which a user's function is differentiated

@@ -20,9 +20,9 @@ from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.linear.model import Model
-from dewing_sim.numerals import apart, not_above
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import extended, schema
+from dewing_sim.schema.numerals import apart, not_above
 
 
 class State(NamedTuple):

@@ -8,9 +8,9 @@ from types import MappingProxyType
 
 from hypothesis import strategies as st
 
-from dewing_sim import parameters, relations
+from dewing_sim import parameters
 from dewing_sim.parameters import Case
-from dewing_sim.schema import Numbers
+from dewing_sim.schema import Numbers, relations
 
 CONSTANTS = st.dictionaries(st.from_regex('[a-z]+_[0-9]', fullmatch=True),
                             st.floats(-1.0e9, 1.0e9))

@@ -9,9 +9,10 @@ stand in `membrane.constants`, checked here against what the law declares.
 import inspect
 from collections.abc import Mapping
 
-from dewing_sim import parameters, plugins
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.scales import Scales
+from dewing_sim.schema import plugins
 from dewing_sim.structure.material.elastomer import VACUUM_PERMITTIVITY, Elastomer
 from dewing_sim.structure.material.gent import Gent
 from dewing_sim.structure.material.law import Law, Plane, energy, slopes

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from dewing_cli import main as cli
-from dewing_sim import parameters, plugins
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.rest import trim
+from dewing_sim.schema import plugins
 from dewing_sim.structure import elements
 from dewing_sim.structure.material import constants, registry
 from dewing_sim.structure.sheet import Sheet

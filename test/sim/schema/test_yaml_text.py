@@ -7,9 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dewing_cli import main as cli
-from dewing_sim import parameters, yaml_text
+from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity
+from dewing_sim.schema import yaml_text
 
 LAUGHS = f'- &a0 [{"lol, " * 9}]\n' + ''.join(
     f'- &a{k} [{", ".join([f"*a{k - 1}"] * 9)}]\n' for k in range(1, 9))

@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from dewing_sim import plugins
 from dewing_sim.errors import BadInput
+from dewing_sim.schema import plugins
 
 
 def test_a_part_of_an_installed_package_is_found():

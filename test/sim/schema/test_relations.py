@@ -8,8 +8,8 @@ import pytest
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.inputs.trajectory import Course
-from dewing_sim.numerals import apart, not_above, not_below
 from dewing_sim.parameters import Case
+from dewing_sim.schema.numerals import apart, not_above, not_below
 from dewing_sysid.settings import Settings
 
 DT = 'numerics.time_step'

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any
 
 from dewing_sim.errors import BadInput
-from dewing_sim.numerals import apart, not_above, not_below
+from dewing_sim.schema.numerals import apart, not_above, not_below
 
 
 def same(value: float) -> float:

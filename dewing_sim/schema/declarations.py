@@ -12,10 +12,10 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, TypeVar
 
-from dewing_sim import relations
 from dewing_sim.errors import BadInput
-from dewing_sim.named_numbers import Numbers
-from dewing_sim.plugins import is_plugin
+from dewing_sim.schema import relations
+from dewing_sim.schema.named_numbers import Numbers
+from dewing_sim.schema.plugins import is_plugin
 
 Section = TypeVar('Section')
 HUGE = 1.0e15       # bounds of a number whose own are not known here
