@@ -129,7 +129,7 @@ def test_a_late_controller_is_waited_for(both):
     ros, session = both
     path, doctor = ros.recorder(), session.add(Doctor)
     simulator = ros.simulator(duration=0.01, subscribers=2)
-    session.spin_until(lambda: 'waiting for a controller and listeners' in doctor.sentences,
+    session.spin_until(lambda: any('0 controllers and' in said for said in doctor.sentences),
                        PATIENCE)
     ros.controller()
     assert simulator.wait(PATIENCE) == 0
