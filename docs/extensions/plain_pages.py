@@ -9,8 +9,8 @@ are no pages are only named.
 
 import re
 
-MODULE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control)(?:/\w+)*?)(?:/__init__)?\.py\)')
-PACKAGE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control)(?:/\w+)*)/?\)')
+MODULE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control|cli)(?:/\w+)*?)(?:/__init__)?\.py\)')
+PACKAGE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control|cli)(?:/\w+)*)/?\)')
 PACKAGES = ('dewing_sim', 'dewing_sysid', 'dewing_control', 'dewing_cli')
 OUTSIDE = re.compile(r'\[([^]]+)\]\((?:\.\./)+\w+\.md[^)]*\)')
 SECTION = re.compile(r'^## (.+)$', re.M)

@@ -44,10 +44,10 @@ class Plane(NamedTuple):
 class Compiled(NamedTuple):
     """What kernels call; ``k`` is the tuple of constants, stretches are those of F.
 
-    * ``energy(i1, j, lateral, k)`` returns W, zero where nothing is deformed;
-    * ``slopes(i1, j, lateral, k)`` returns its `Plane`;
-    * ``deviatoric(c11, c22, c12, c33, k)`` returns S_11, S_22 and S_12, the second
-      Piola-Kirchhoff stress of W, from F^T F whose third axis is the prescribed one.
+    ``energy(i1, j, lateral, k)`` returns W, zero where nothing is deformed, and
+    ``slopes(i1, j, lateral, k)`` its `Plane`. ``deviatoric(c11, c22, c12, c33, k)`` returns S_11,
+    S_22 and S_12, the second Piola-Kirchhoff stress of W, from F^T F whose third axis is the
+    prescribed one.
     """
 
     energy: Callable
