@@ -9,7 +9,8 @@ are no pages are only named.
 
 import re
 
-MODULE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control|cli)(?:/\w+)*?)(?:/__init__)?\.py\)')
+MODULE = re.compile(
+    r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control|cli)(?:/\w+)*?)(?:/__init__)?\.py\)')
 PACKAGE = re.compile(r'\]\((?:\.\./)+(dewing_(?:sim|sysid|control|cli)(?:/\w+)*)/?\)')
 PACKAGES = ('dewing_sim', 'dewing_sysid', 'dewing_control', 'dewing_cli')
 OUTSIDE = re.compile(r'\[([^]]+)\]\((?:\.\./)+\w+\.md[^)]*\)')
