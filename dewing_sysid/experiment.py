@@ -20,6 +20,7 @@ from dewing_sim.machine.jobs import HERE, Workers, results
 from dewing_sim.plant import Outputs, Plant
 from dewing_sim.quantities import Absent
 
+WORTH_PROCESSES = 10_000    # steps; fewer are made before another process has begun
 STANDARD = ('camber_mean', 'camber_max', 'cl')
 MODAL = STANDARD + tuple(f'mode_{n}' for n in range(1, 6))
 
@@ -161,15 +162,17 @@ def run_all(plant: Plant, start: Any, names: Sequence[str], inputs: Sequence[np.
             progress: Callable[[float], None] = lambda fraction: None) -> list[np.ndarray]:
     """Return the outputs of independent runs, in the order of ``inputs``.
 
-    The longest start first. With one worker, or a plant that does not pickle, such as one with a
-    user's lambda, they follow each other in this process. ``progress`` hears the finished share.
+    The longest start first. With one worker, for a plant that does not pickle, such as one with a
+    user's lambda, or for fewer steps than are worth another process, they follow each other in
+    this one. ``progress`` hears the finished share.
     """
     order = sorted(range(len(inputs)), key=lambda i: -len(inputs[i]))
     jobs = {i: Job(partial(run, plant, start, names, inputs[i]), cost=len(inputs[i]))
             for i in order}
-    alone = workers == HERE or not _pickles((plant, start))
     found: dict[int, np.ndarray] = {}
     total, done = sum(map(len, inputs)), 0
+    short = workers.scheduler is None and total < WORTH_PROCESSES
+    alone = workers == HERE or short or not _pickles((plant, start))
     for i, outcome in ((i, jobs[i].call()) for i in order) if alone else results(jobs, workers):
         if isinstance(outcome, Failed):
             raise outcome.error

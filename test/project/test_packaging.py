@@ -94,6 +94,18 @@ def test_every_imported_ros_package_is_declared():
     assert 'rclpy' in imported and imported <= declared
 
 
+def test_the_linters_look_at_all_sources_and_at_nothing_that_lies_beside_them():
+    """By name: an environment of any name, or a build, may lie in the checkout."""
+    text = (PROJECT / 'Makefile').read_text().replace('\\\n', ' ')
+    named = set(re.search(r'^SOURCES = (.*)$', text, re.M)[1].split())
+    tracked = subprocess.run(['git', 'ls-files', '*.py'], cwd=PROJECT, capture_output=True,
+                             text=True, check=False).stdout.splitlines()
+    ours = {path.partition('/')[0] for path in tracked} or {
+        path.name for path in PROJECT.iterdir() if path.name in named}
+    assert named == ours
+    assert '$(BIN)/ruff check $(SOURCES)' in text and '$(BIN)/flake8 $(SOURCES)' in text
+
+
 def test_package_xml_is_of_format_3_for_ament_python():
     assert PACKAGE.get('format') == '3'
     assert PACKAGE.findtext('export/build_type') == 'ament_python'

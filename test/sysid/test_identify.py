@@ -157,9 +157,21 @@ def test_a_doublet_about_a_raised_operating_point_gives_the_same_poles():
     assert found.model.modes()[0][-3:] == pytest.approx(FREQUENCIES, rel=1e-3)
 
 
-def test_two_processes_give_the_records_of_one():
+@pytest.fixture
+def always_processes(monkeypatch):
+    """Let the shortest experiments have processes of their own."""
+    monkeypatch.setattr(experiment, 'WORTH_PROCESSES', 0)
+    return [HERE, Workers(2)]
+
+
+def test_few_steps_are_made_in_this_process(monkeypatch):
+    monkeypatch.setattr(experiment, 'results', None)
+    assert found_on(SyntheticPlant(), settings(), workers=Workers(2)).records
+
+
+def test_two_processes_give_the_records_of_one(always_processes):
     one, two = (found_on(SyntheticPlant(), settings(), workers=n).records
-                for n in (HERE, Workers(2)))
+                for n in always_processes)
     assert list(one) == list(two)
     for run in one:
         assert np.array_equal(one[run].outputs, two[run].outputs)
@@ -307,10 +319,10 @@ def test_an_unknown_output_is_refused():
 
 
 @pytest.mark.parametrize('engine, grid', [('conformal', 'realtime'), ('finite_volume', 'fast')])
-def test_a_wing_moves_alike_in_processes_of_its_own(engine, grid):
+def test_a_wing_moves_alike_in_processes_of_its_own(engine, grid, always_processes):
     wing = Wing(parameters.load('paper', changes={
         'numerics.engine': engine, 'numerics.grid': grid, 'numerics.trim_time': 0.2}))
     inputs = [np.full(4, v_squared) for v_squared in (0.0, 2.5e5)]
     here, there = (experiment.run_all(wing, wing.rest(), ('camber_mean', 'cl'), inputs, workers)
-                   for workers in (HERE, Workers(2)))
+                   for workers in always_processes)
     assert np.array_equal(here, there)
