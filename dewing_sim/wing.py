@@ -25,11 +25,11 @@ from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.rest import trim
 from dewing_sim.scales import Scales
-from dewing_sim.schema.numerals import apart
 from dewing_sim.state import State
 from dewing_sim.structure import elements
 from dewing_sim.structure.dynamics.step import Operator
 from dewing_sim.structure.material.elastomer import VACUUM_PERMITTIVITY
+from dewing_sim.structure.material.limits import require_tension
 
 
 class Wing:
@@ -52,7 +52,9 @@ class Wing:
         self.membrane = elements.make(case.membrane, self.scales)
         self.v_squared_slack = self.membrane.sheet.loss_of_tension_v_squared(
             case.membrane.prestretch)
-        _require_tension(case, math.sqrt(self.v_squared_slack))
+        require_tension(case.membrane.prestretch, math.sqrt(self.v_squared_slack), {
+            f'actuation.{name} =': getattr(case.actuation, name)
+            for name in ('voltage', 'voltage_limit')})
         self.amplifier = Amplifier.of(case.actuation)
         self.sources = Sources.of(case, self.scales, wall_pressure, gust, motion)
         self.case = engine_choice.settled(case, self.membrane, self.scales,
@@ -171,12 +173,3 @@ def peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     slope = (rise * after + fall * before) / (before + after)
     offset = 0.5 * slope * (before + after) / (rise - fall)
     return float(y[k]) + 0.5 * slope * offset, float(x[k]) + offset
-
-
-def _require_tension(case: Case, slack_voltage: float) -> None:
-    for name in ('voltage', 'voltage_limit'):
-        value = getattr(case.actuation, name)
-        if value >= slack_voltage:
-            shown, least = apart(value, slack_voltage, 4)
-            raise BadInput(f'actuation.{name} = {shown} V is out of range: the membrane loses '
-                           f'its tension at {least} V')

@@ -14,9 +14,7 @@ from typing import Any, Iterator, NamedTuple
 
 from dewing_cli import options, outputs, results
 from dewing_cli.progress import Laps, bar, until_interrupted
-from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Case
-from dewing_sim.schema.numerals import apart
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -90,12 +88,10 @@ def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
 def _check_voltage(voltage: float | None, case: Case) -> None:
     """Raise `BadInput` for a voltage that the membrane of ``case`` cannot take."""
     from dewing_sim.identity import loss_of_tension
-    slack = loss_of_tension(case)**0.5
-    for name, value in (('--voltage', voltage), ('actuation.voltage', case.actuation.voltage)):
-        if value is not None and value >= slack:
-            shown, least = apart(value, slack, 4)
-            raise BadInput(f'{name} {shown} V is out of range: the membrane loses its tension '
-                           f'at {least} V')
+    from dewing_sim.structure.material.limits import require_tension
+    voltages = {'--voltage': voltage, 'actuation.voltage': case.actuation.voltage}
+    require_tension(case.membrane.prestretch, loss_of_tension(case)**0.5, {
+        name: value for name, value in voltages.items() if value is not None})
     if voltage is not None:
         options.within('--voltage', voltage, 0.0, case.actuation.voltage_limit, 'V')
         _warn_of_breakdown(voltage, case)

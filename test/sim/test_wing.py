@@ -55,6 +55,11 @@ def test_disturbance_moves_the_camber_as_the_paper_says():
     assert 0.5 * np.ptp(relative) == pytest.approx(0.050, abs=0.005)
 
 
+def test_a_membrane_without_tension_is_named_by_its_prestretch():
+    with pytest.raises(BadInput, match='membrane.prestretch = 1 leaves the flat membrane'):
+        Wing(parameters.load('paper', changes={'membrane.prestretch': 1.0}))
+
+
 def test_voltage_lowers_the_tension_and_raises_mean_camber_and_lift(fast, fast_rest):
     def mean(name, v_squared):          # over three periods of the first mode, 72 Hz
         run = rollout(fast, fast_rest, lambda _: Inputs(v_squared), 210)
@@ -100,9 +105,11 @@ def test_unusable_commands_are_refused(fast, fast_rest, v_squared):
 
 
 def test_voltages_beyond_the_loss_of_tension_are_refused():
-    for key in ('actuation.voltage', 'actuation.voltage_limit'):
-        with pytest.raises(BadInput, match=rf'{key} = 1400 V.*loses its tension at 1300 V'):
-            Wing(parameters.load('paper', changes={key: 1400.0}))
+    limit = {'actuation.voltage_limit': 1400.0}
+    for name, changes in (('voltage_limit', limit),
+                          ('voltage', {**limit, 'actuation.voltage': 1400.0})):
+        with pytest.raises(BadInput, match=f'actuation.{name} = 1400 V.*its tension at 1300 V'):
+            Wing(parameters.load('paper', changes=changes))
 
 
 def test_a_membrane_gone_slack_stops_with_the_last_good_state(fast, fast_rest):

@@ -7,12 +7,14 @@ thickness pulls in under constant voltage; the sheet snaps to the branch beyond,
 stiffens enough to make the voltage rise again (Zhao and Suo, doi 10.1063/1.2768641).
 """
 
+from collections.abc import Mapping
 from typing import Callable, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
 from dewing_sim.errors import BadInput
+from dewing_sim.schema.numerals import apart
 from dewing_sim.structure.material.elastomer import Elastomer, diagonal
 from dewing_sim.structure.material.law import Law
 
@@ -101,6 +103,22 @@ def _maximum(function: Callable[[float], float], low: float, high: float) -> flo
         step = 1.0e-6 * stretch
         return function(stretch + step) - function(stretch - step)
     return float(brentq(slope, low, high, xtol=1e-12))
+
+
+def require_tension(prestretch: float, slack_voltage: float, voltages: Mapping[str, float],
+                    ) -> None:
+    """Raise `BadInput` unless a membrane that is slack from ``slack_voltage`` on (V) is taut.
+
+    ``voltages`` (V) are those that it has to bear, by the names under which they are given.
+    """
+    if slack_voltage == 0.0:
+        raise BadInput(f'membrane.prestretch = {prestretch:g} leaves the flat membrane without '
+                       'tension: raise it')
+    for name, value in voltages.items():
+        if value >= slack_voltage:
+            shown, least = apart(value, slack_voltage, 4)
+            raise BadInput(f'{name} {shown} V is out of range: the membrane loses its tension '
+                           f'at {least} V')
 
 
 def breakdown_warning(electric_field: float, threshold: float) -> str | None:
