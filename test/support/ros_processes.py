@@ -3,6 +3,7 @@
 """Simulator, controller and recorder of a linear wing as processes over DDS, for the tests."""
 
 import time
+import warnings
 from contextlib import contextmanager
 
 import numpy as np
@@ -96,8 +97,10 @@ def wait_until(condition):
 
 def simulated_time(path):
     """Return the last stamp in a growing bag, 0 before it has any."""
-    stamps = [message.header.stamp for _, _, message in bag.read(path, '/dewing/measurement')
-              ] if path.exists() else []
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', RuntimeWarning)     # the bag is not closed yet
+        stamps = [message.header.stamp for _, _, message in bag.read(path, '/dewing/measurement')
+                  ] if path.exists() else []
     return stamps[-1].sec + 1.0e-9 * stamps[-1].nanosec if stamps else 0.0
 
 

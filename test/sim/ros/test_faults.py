@@ -180,11 +180,12 @@ def test_a_recorder_that_does_not_run_holds_the_loop_up_and_loses_nothing(tmp_pa
 @pytest.mark.slow
 def test_a_recorder_that_is_given_up_is_said_to_be_gone(tmp_path):
     with graph(tmp_path) as ros, harness.Session(ros.domain) as session:
-        ros.recorder()
+        path = ros.recorder()
         doctor = session.add(Doctor)
         ros.simulator(subscribers=2, hold_timeout=PATIENCE)
         ros.controller()
-        session.spin_until(lambda: 'running' in doctor.sentences, PATIENCE)
+        # The controller answers once the recorder listens; not before may that be stopped.
+        session.spin_until(lambda: simulated_time(path) > 0.0, PATIENCE)
         ros.processes[0].send_signal(signal.SIGSTOP)
         session.spin_until(lambda: any('1 of 2 listeners of measurement are left' in said
                                        for said in doctor.sentences), PATIENCE)
