@@ -11,8 +11,11 @@ import pytest
 from dewing_sim.machine.signals import ENDS, Interrupted, Stop, end, kill, status_of, undisturbed
 
 PATIENCE = 60.0
-POLITE = 'print("ready", flush=True); import time; time.sleep(1000)'
-DEAF = 'import signal\nfor n in signal.SIGINT, signal.SIGTERM: signal.signal(n, lambda *_: None)\n'
+WAIT = 'print("ready", flush=True); import time; time.sleep(1000)'
+# A shell that starts tests in the background lets them, and their children, ignore SIGINT.
+POLITE = f'import signal; signal.signal(signal.SIGINT, signal.SIG_DFL)\n{WAIT}'
+DEAF = ('import signal\nfor n in signal.SIGINT, signal.SIGTERM: signal.signal(n, lambda *_: None)\n'
+        f'{WAIT}')
 
 
 def start(code):
@@ -78,7 +81,7 @@ def test_a_stopped_process_is_continued_and_asked():
 
 
 def test_a_deaf_process_is_killed_stopped_or_not():
-    processes = [start(DEAF + POLITE) for _ in range(2)]
+    processes = [start(DEAF) for _ in range(2)]
     assert end(processes[0], 0.2) == -signal.SIGKILL
     processes[1].send_signal(signal.SIGSTOP)
     assert kill(processes[1]) == -signal.SIGKILL
