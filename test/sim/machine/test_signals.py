@@ -14,8 +14,8 @@ PATIENCE = 60.0
 WAIT = 'print("ready", flush=True); import time; time.sleep(1000)'
 # A shell that starts tests in the background lets them, and their children, ignore SIGINT.
 POLITE = f'import signal; signal.signal(signal.SIGINT, signal.SIG_DFL)\n{WAIT}'
-DEAF = ('import signal\nfor n in signal.SIGINT, signal.SIGTERM: signal.signal(n, lambda *_: None)\n'
-        f'{WAIT}')
+DEAF = ('import signal\nfor each in signal.SIGINT, signal.SIGTERM:\n'
+        f'    signal.signal(each, lambda *_: None)\n{WAIT}')
 
 
 def start(code):
