@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.errors import BadInput, Diverged
+from dewing_sim.errors import BadInput, DewingError, Diverged
 from dewing_sim.fluid.base import INFLOWS, Demand, Fluid, Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.conformal import diagnostics, noslip, step
 from dewing_sim.fluid.conformal.geometry.frame import Frame
@@ -27,7 +27,7 @@ from dewing_sim.fluid.conformal.pressure import added_mass, force
 from dewing_sim.fluid.field import FlowField
 from dewing_sim.fluid.inflow import Inflow
 
-PINNED = 1.0e-9         # chords
+PINNED = 1.0e-7         # chords: springs that hold an edge give way by q c over the bulk modulus
 VERIFIED = {            # up to the time step, which its grid limits
     'camber': (0.0, 0.15),                  # chords
     'Reynolds number': (100.0, 10000.0),
@@ -146,8 +146,11 @@ class Conformal(Fluid):
         return replace(state, circulation=circulation)
 
     def predict(self, state: FlowState, wall: Wall, inflow: Inflow | None = None) -> Prediction:
-        """Advance vorticity and stream function with the wall at its new place and velocity."""
-        _require_pinned(wall)
+        """Advance vorticity and stream function with the wall at its new place and velocity.
+
+        Raises `Diverged` if an edge of the wall leaves the chord.
+        """
+        _require_pinned(wall, Diverged)
         frame = Frame.of(inflow, self.grid) if inflow else self._steady
         around = self.geometry.follow(wall, state.height, state.map, state.map_before)
         edges = self.edges.near(around.map)
@@ -239,7 +242,9 @@ class Conformal(Fluid):
         return -np.array(jumps).T
 
 
-def _require_pinned(wall: Wall) -> None:
-    ends = (wall.height[0], wall.height[-1], *wall.edge_velocity)
-    if max(map(abs, ends)) > PINNED:
-        raise BadInput('the conformal engine needs a membrane whose edges stay at y = 0')
+def _require_pinned(wall: Wall, kind: type[DewingError] = BadInput) -> None:
+    """Raise an error of ``kind`` unless the edges are at rest on the chord."""
+    most = max(map(abs, (wall.height[0], wall.height[-1], *wall.edge_velocity)))
+    if most > PINNED:
+        raise kind('the conformal engine needs a membrane whose edges stay at y = 0; here one '
+                   f'leaves it by {most:.2g} chords')
