@@ -39,7 +39,7 @@ SHORT = {
 }
 # Blocks that `make long` executes, by their first line.
 LONG = (
-    'make demo', 'python3 -m venv ~/dewing-env',
+    'make demo', 'python3 -m venv ~/dewing-env', 'python examples/closed_loop.py',
     "make test PYTEST_OPTIONS='test/sim/ros/test_examples.py'",
     'dewing material --case paper --out docs/images/material/paper --force',
     'dewing paper --out out/paper',
