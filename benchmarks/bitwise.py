@@ -117,7 +117,7 @@ def fly(folder: Path) -> None:
 
         bag = folder / 'flight.mcap'
         bag.unlink(missing_ok=True)
-        others = [node('recorder', output=bag), node('controller')]
+        listeners = [node('recorder', output=bag), node('controller')]
         simulator = node('simulator', numerics__engine='conformal', numerics__grid='realtime',
                          numerics__time_step=5.0e-4, numerics__trim_time=2.0,
                          disturbance__pressure=0.015, run__duration=BAG_STEPS * 5.0e-4,
@@ -126,9 +126,9 @@ def fly(folder: Path) -> None:
             if simulator.wait(300.0):
                 raise RuntimeError('the simulator failed')
         finally:
-            for process in (simulator, *others):
+            for process in (simulator, *listeners):
                 process.send_signal(signal.SIGINT)
-            for process in others:
+            for process in listeners:
                 process.wait(60.0)
 
 
