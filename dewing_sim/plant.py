@@ -124,6 +124,22 @@ class Plant(Protocol):
         """Return the outputs of ``state``."""
 
 
+class Measuring(Protocol):
+    """What a `Plant` may have beside: its measured outputs alone, sooner than by `observe`."""
+
+    def measure(self, state: Any) -> 'Measurement':
+        """Return the measurement of ``state``, equal to that of what `Plant.observe` returns."""
+
+
+def measure(plant: Plant, state: Any) -> 'Measurement':
+    """Return what a controller sees of ``state``: what ``plant`` measures, else what it observes.
+
+    A plant measures if it is `Measuring`. The values are not checked, see `LockStep`.
+    """
+    own = getattr(plant, 'measure', None)
+    return Measurement.of(plant.observe(state)) if own is None else own(state)
+
+
 def rollout(plant: Plant, state: Any, command: Callable[[Outputs], Inputs], steps: int,
             ) -> Iterator[tuple[Any, Outputs]]:
     """Yield (state, outputs) after each step; ``command`` maps outputs to the next inputs."""

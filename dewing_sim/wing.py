@@ -22,7 +22,7 @@ from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.sources import Motion, Pressure, Sources
 from dewing_sim.machine import compilation
 from dewing_sim.parameters import Case
-from dewing_sim.plant import Outputs
+from dewing_sim.plant import Measurement, Outputs
 from dewing_sim.rest import trim
 from dewing_sim.scales import Scales
 from dewing_sim.state import State
@@ -128,6 +128,10 @@ class Wing:
             coupling_iterations=state.iterations,
             x=chord * x, y=chord * y,
             pressure_jump=self.scales.pressure * np.interp(x, self._centres, loads.jump))
+
+    def measure(self, state: State) -> Measurement:
+        """Return the measured outputs of ``state``, those of `observe`."""
+        return Measurement.of(self.observe(state))
 
     def monitor(self, state: State) -> Monitor:
         """Return how near the flow of ``state`` is to the largest time step it bears."""

@@ -20,7 +20,7 @@ from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.files import new_file, read_npz
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.linear.model import Model
-from dewing_sim.plant import Outputs
+from dewing_sim.plant import Measurement, Outputs
 from dewing_sim.quantities import extended, schema
 from dewing_sim.schema.numerals import apart, not_above
 
@@ -129,6 +129,10 @@ class Reduced:
             y = y + self.disturbance * (1.0 - math.cos(phase))
         return self._outputs(time=time, v_squared=state.v_squared,
                              **dict(zip(self.model.output_names, y.tolist())))
+
+    def measure(self, state: State) -> Measurement:
+        """Return the measured outputs of ``state``."""
+        return Measurement.of(self.observe(state))
 
     def save(self, path: str | Path, state: State) -> None:
         """Write ``state`` to the npz file ``path``."""

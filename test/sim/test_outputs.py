@@ -20,7 +20,7 @@ from dewing_sim.inputs.base import Inputs
 from dewing_sim.linear import reduced
 from dewing_sim.linear.model import Model
 from dewing_sim.lockstep import LockStep
-from dewing_sim.plant import Measurement, Outputs, rollout
+from dewing_sim.plant import Measurement, Outputs, measure, rollout
 from dewing_sim.quantities import output, schema
 from dewing_sim.records import bag
 from dewing_sim.records.history import History, record
@@ -66,6 +66,14 @@ def test_what_is_measured_goes_to_controllers_and_messages_behind_the_others():
     measured = messages.to_measurement(message)
     assert measured == Measurement.of(outputs) and measured.edge_slope == outputs.edge_slope
     assert not hasattr(measured, 'elastic_energy')
+
+
+def test_a_plant_is_measured_by_itself_or_by_what_it_observes():
+    plant = Plant(CASE)
+    seen = measure(plant, plant.rest())
+    assert seen == Measurement.of(plant.observe(plant.rest())) and seen.edge_slope > 0.0
+    plant.measure = lambda state: seen._replace(edge_slope=-1.0)
+    assert measure(plant, plant.rest()).edge_slope == -1.0
 
 
 def test_the_lock_step_watches_its_numbers():
