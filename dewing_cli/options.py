@@ -4,12 +4,14 @@
 
 import argparse
 import math
+import warnings
 from pathlib import Path
 from typing import Any, Callable
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.fluid import engines
+from dewing_sim.fluid.choice import AUTO
 from dewing_sim.inputs.disturbance import DISTURBANCES
 from dewing_sim.machine.jobs import Workers
 from dewing_sim.parameters import Case, Numerics
@@ -17,6 +19,8 @@ from dewing_sim.schema.numerals import apart, not_above
 from dewing_sim.schema.plugins import is_plugin
 
 NUMERICS = {'engine': 'numerics.engine', 'grid': 'numerics.grid', 'dt': 'numerics.time_step'}
+REAL_TIME = 'realtime'      # the shipped case that keeps up with the air
+TIMES = 1.5                 # its time step over one that takes noticeably longer
 
 
 def add_case(parser: argparse.ArgumentParser) -> None:
@@ -88,7 +92,23 @@ def load_case(arguments: argparse.Namespace) -> Case:
             changes[name] = value
     if arguments.disturbance is not None:
         changes |= one_of('--disturbance', arguments.disturbance, DISTURBANCES)
-    return parameters.load(arguments.case, Case, changes)
+    case = parameters.load(arguments.case, Case, changes)
+    if arguments.grid is not None and not arguments.quiet:
+        _say_cost(case)
+    return case
+
+
+def _say_cost(case: Case) -> None:
+    """Warn of a time step that is a small part of what the grid for real time bears."""
+    real_time = parameters.load(REAL_TIME).numerics
+    wanted, given = case.numerics, real_time.time_step / case.numerics.time_step
+    meant = wanted.engine in (real_time.engine, AUTO) and wanted.grid == real_time.grid
+    if meant and given > TIMES:
+        warnings.warn(
+            f'numerics.grid = {wanted.grid} is made for steps of {real_time.time_step:g} s: '
+            f'{wanted.time_step:g} s takes {given:.3g} times as many, '
+            f'{1.0 / wanted.time_step:.0f} for a second of flight; --case {REAL_TIME} has both',
+            RuntimeWarning, stacklevel=3)
 
 
 def read_files(*names: str | None) -> list[Path]:

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 
 from dewing_cli import main as cli
 from dewing_cli.commands import simulate
+from dewing_cli.options import load_case
 from dewing_sim import parameters
 from dewing_sim.machine.signals import ENDS
 from dewing_sim.records.history import History, Recorder
@@ -125,6 +127,22 @@ def test_bad_input_ends_with_status_2_and_one_sentence(capsys, arguments, compla
 ])
 def test_a_bad_case_file_ends_with_status_2_and_one_sentence(capsys, old, new, complaint):
     assert complaint in fails(capsys, ['simulate', '--case', changed_case(old, new)])
+
+
+@pytest.mark.parametrize('options, said', [
+    (['--engine', 'conformal', '--grid', 'realtime'],
+     'dewing: warning: numerics.grid = realtime is made for steps of 0.0005 s: 0.0001 s takes 5 '
+     'times as many, 10000 for a second of flight; --case realtime has both\n'),
+    (['--engine', 'conformal', '--grid', 'realtime', '--quiet'], ''),
+    (['--engine', 'conformal', '--grid', 'realtime', '--dt', '5e-4'], ''),
+    (['--case', 'realtime', '--grid', 'realtime'], ''),
+    (['--engine', 'conformal', '--grid', 'fast'], '')])
+def test_a_small_step_on_the_grid_for_real_time_says_what_it_costs(capsys, options, said):
+    arguments = cli.build_parser().parse_args(['simulate', *options])
+    with warnings.catch_warnings():
+        warnings.showwarning = cli._show_warning
+        load_case(arguments)
+    assert capsys.readouterr().err == said
 
 
 @pytest.mark.parametrize('option', ['--out', '--json'])

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every shipped YAML file loads into the schema of its kind, and every case is stepped."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,23 @@ def test_a_shipped_file_loads(name):
 
 def test_the_paper_s_cases_are_shipped():
     assert {'paper', 'paper_alpha8', 'soft'} <= set(CASES)
+
+
+@pytest.mark.parametrize('name, paper', [
+    ('realtime', 'paper'), ('realtime_alpha8', 'paper_alpha8')])
+def test_a_case_for_real_time_is_the_paper_s_wing_with_other_numerics(name, paper):
+    ours, theirs = parameters.load(name), parameters.load(paper)
+    assert dataclasses.replace(ours, numerics=theirs.numerics) == theirs
+    assert (ours.numerics.engine, ours.numerics.grid) == ('conformal', 'realtime')
+
+
+@pytest.mark.parametrize('name', ['realtime', 'realtime_alpha8'])
+def test_the_time_step_for_real_time_is_one_that_the_grid_bears(name):
+    from dewing_sim.fluid.conformal.presets import PRESETS
+    from dewing_sim.scales import Scales
+    case = parameters.load(name)
+    step = case.numerics.time_step / Scales.of(case.flow, case.membrane.chord).time
+    assert 0.9 * PRESETS['realtime'].largest_step < step <= PRESETS['realtime'].largest_step
 
 
 @pytest.mark.parametrize('name', FILES)
