@@ -41,6 +41,7 @@ test: lint
 
 bench: venv
 	@$(BIN)/dewing bench $(BENCH_OPTIONS)
+	@$(BIN)/dewing bench --graph
 	@$(BIN)/python benchmarks/roundtrip.py
 
 bench-peers: venv
