@@ -34,7 +34,8 @@ setup(
         ('share/dewing/config', [
             f'config/{path.name}' for path in sorted(SOURCE.glob('config/*.*'))
             if path.suffix in ('.yaml', '.rviz', '.json')]),
-        ('share/dewing/launch', ['launch/dewing.launch.py']),
+        ('share/dewing/launch', [
+            f'launch/{path.name}' for path in sorted(SOURCE.glob('launch/*.launch.py'))]),
         ('lib/dewing', [f'scripts/{name}' for name in EXECUTABLES]),
     ],
     install_requires=[
@@ -65,6 +66,7 @@ setup(
             'hypothesis>=6.60',
             'osqp>=1.0',
             'pandas>=2.0',
+            'psutil>=5.9',
             'pytest>=7.4',
             'pytest-timeout>=2.1',
             'xarray>=2024.1',

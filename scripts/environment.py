@@ -121,7 +121,7 @@ def add_to_ament_index(folder: Path) -> None:
     marker.parent.mkdir(parents=True, exist_ok=True)
     marker.touch()
     share = folder / 'share' / 'dewing'
-    links = {share / name: PROJECT / name for name in ('config', 'package.xml')}
+    links = {share / name: PROJECT / name for name in ('config', 'launch', 'package.xml')}
     links |= {folder / 'lib' / 'dewing' / name: Path('..', '..', 'bin', f'dewing_{name}')
               for name in EXECUTABLES}
     for link, target in links.items():

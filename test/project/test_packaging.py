@@ -3,6 +3,7 @@
 """What pip, colcon and ``ros2 run`` find."""
 
 import ast
+import csv
 import os
 import re
 import runpy
@@ -50,7 +51,20 @@ def test_every_data_file_exists_and_the_index_marker_is_among_them(setup):
     assert data['share/ament_index/resource_index/packages'] == ['resource/dewing']
     assert {Path(name) for name in data['share/dewing/config']} == {
         path.relative_to(PROJECT) for path in PROJECT.glob('config/*.*') if path.suffix != '.py'}
-    assert data['share/dewing/launch'] == ['launch/dewing.launch.py']
+    assert {Path(name) for name in data['share/dewing/launch']} == {
+        path.relative_to(PROJECT) for path in PROJECT.glob('launch/*.py')}
+
+
+def test_an_editable_environment_has_every_file_that_an_installed_one_has(setup, tmp_path):
+    """``make venv`` links what setup.py copies: no documented command may miss a file."""
+    runpy.run_path(str(PROJECT / 'scripts' / 'environment.py'))['add_to_ament_index'](tmp_path)
+    (tmp_path / 'bin').mkdir()
+    for name in EXECUTABLES:
+        (tmp_path / 'bin' / f'dewing_{name}').touch()
+    for folder, names in setup['data_files']:
+        missing = [name for name in names
+                   if not (tmp_path / folder / Path(name).name).is_file()]
+        assert not missing, folder
 
 
 @pytest.mark.parametrize('name', EXECUTABLES)
@@ -85,13 +99,39 @@ def test_the_ament_index_leads_to_the_shipped_parameters():
     assert (share / 'config' / 'paper.yaml').is_file()
 
 
+DEPENDS = [element.text for kind in ('exec_depend', 'test_depend') for element in PACKAGE.iter(kind)]
+KEYS = {row[0]: row[-1] for row in csv.reader(
+    (PROJECT / 'test' / 'reference' / 'rosdep_keys.csv').read_text().splitlines()[3:])}
+WITHOUT_KEY = {'control', 'distributed', 'osqp', 'xarray'}
+BROUGHT_ALONG = {'llvmlite': 'python3-numba', 'mcap': 'mcap-ros2-support'}
+
+
 def test_every_imported_ros_package_is_declared():
-    declared = {element.text for element in PACKAGE.iter('exec_depend')}
-    imported = set()
-    for path in PROJECT.glob('dewing_*/**/*.py'):
-        imported |= set(re.findall(r'^\s*(?:from|import) (rclpy|\w+_msgs|\w+_srvs)\b',
-                                   path.read_text(), re.M))
-    assert 'rclpy' in imported and imported <= declared
+    imported = {'ros2launch'}           # the documentation starts the nodes by it
+    for path in [*PROJECT.glob('dewing_*/**/*.py'), *PROJECT.glob('launch/*.py')]:
+        imported |= set(re.findall(
+            r'^\s*(?:from|import) (rclpy|launch|launch_ros|\w+_interfaces|\w+_msgs|\w+_srvs)\b',
+            path.read_text(), re.M))
+    assert {'rclpy', 'builtin_interfaces', 'launch_ros'} < imported
+    assert imported == {key for key in DEPENDS if not key.startswith(('python3-', 'mcap'))}
+
+
+def test_every_key_of_rosdep_stands_once_and_is_known_to_rosdep():
+    assert len(DEPENDS) == len(set(DEPENDS))
+    assert set(DEPENDS) == KEYS.keys()
+
+
+def test_what_pip_would_install_rosdep_installs_too_or_the_page_says_how_to_get_it(setup):
+    wanted = setup['install_requires'] + setup['extras_require']['test']
+    by_pip = {re.match(r'[\w-]+', name)[0] for name in wanted}
+    packages = {name.removeprefix('python3-') for name in KEYS.values()}
+    packages |= {brought for brought, key in BROUGHT_ALONG.items() if key in KEYS}
+    assert by_pip - {'pyyaml'} - packages == WITHOUT_KEY and 'yaml' in packages
+    page = (PROJECT / 'docs' / 'getting-started.md').read_text()
+    told = re.search(r"pip install (--user )?('control.*)", page)[2]
+    required = {name for name in wanted + setup['extras_require']['sweep']
+                if re.match(r'[\w-]+', name)[0] in WITHOUT_KEY}
+    assert set(re.findall("'(.*?)'", told)) == required
 
 
 def test_the_linters_look_at_all_sources_and_at_nothing_that_lies_beside_them():
