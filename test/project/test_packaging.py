@@ -99,7 +99,8 @@ def test_the_ament_index_leads_to_the_shipped_parameters():
     assert (share / 'config' / 'paper.yaml').is_file()
 
 
-DEPENDS = [element.text for kind in ('exec_depend', 'test_depend') for element in PACKAGE.iter(kind)]
+DEPENDS = [element.text for kind in ('exec_depend', 'test_depend')
+           for element in PACKAGE.iter(kind)]
 KEYS = {row[0]: row[-1] for row in csv.reader(
     (PROJECT / 'test' / 'reference' / 'rosdep_keys.csv').read_text().splitlines()[3:])}
 WITHOUT_KEY = {'control', 'distributed', 'osqp', 'xarray'}
