@@ -5,12 +5,12 @@
 import math
 
 import numpy as np
-from scipy import signal as dsp
 
 from dewing_sim.errors import BadInput
 from dewing_sim.schema.numerals import apart, not_above
 
 REGISTER_BITS = 11                      # the binary sequence repeats after 2^11 - 1 bits
+TAP = 9                                 # x^11 + x^9 + 1 is primitive
 
 
 def pulse(samples: int, hold: int = 1) -> np.ndarray:
@@ -38,12 +38,15 @@ def prbs(samples: int, hold: int = 1, seed: int = 1) -> np.ndarray:
     Its spectrum is flat within 3 dB up to 0.44 / (hold dt).  ``seed`` (from 1) is the start of
     the shift register, so different seeds give shifted copies of the one sequence.
     """
-    register = [seed >> bit & 1 for bit in range(REGISTER_BITS)]
-    if not any(register):
+    count = math.ceil(samples / hold)
+    bits = np.zeros(count + REGISTER_BITS, dtype=int)
+    bits[:REGISTER_BITS] = [seed >> bit & 1 for bit in range(REGISTER_BITS)]
+    if not bits.any():
         raise BadInput(f'seed = {seed} leaves the shift register empty: '
                        f'take 1 to {2**REGISTER_BITS - 1}')
-    bits, _ = dsp.max_len_seq(REGISTER_BITS, state=register, length=math.ceil(samples / hold))
-    return np.repeat(2.0 * bits - 1.0, hold)[:samples]
+    for k in range(count):
+        bits[k + REGISTER_BITS] = bits[k] ^ bits[k + TAP]
+    return np.repeat(2.0 * bits[:count] - 1.0, hold)[:samples]
 
 
 def chirp(samples: int, dt: float, low: float, high: float, sweeping: float = 0.6) -> np.ndarray:
@@ -57,7 +60,8 @@ def chirp(samples: int, dt: float, low: float, high: float, sweeping: float = 0.
                        f'between 0 and the Nyquist frequency {not_above(0.5 / dt)} Hz')
     time = dt * np.arange(math.ceil(sweeping * samples))
     u = np.zeros(samples)
-    u[:len(time)] = dsp.chirp(time, low, time[-1], high, method='logarithmic', phi=-90.0)
+    rate = math.log(high / low) / time[-1]
+    u[:len(time)] = np.sin(2.0 * np.pi * low / rate * np.expm1(rate * time))
     return u
 
 

@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from dewing_control.model.design import Design
 from dewing_sim.linear.state_space import Matrices, frequency_response
@@ -77,7 +76,8 @@ class Loop:
     def noise_gain(self) -> float:
         """Root mean square of C S: of V^2/V_L^2 for a unit white noise of the camber."""
         power = np.abs(self.control * self.sensitivity)**2
-        return float(np.sqrt(trapezoid(power, self.frequency) / self.frequency[-1]))
+        area = 0.5 * np.diff(self.frequency) * (power[1:] + power[:-1])
+        return float(np.sqrt(area.sum() / self.frequency[-1]))
 
     def to_control(self) -> 'StateSpace':
         """Return L as a `control.StateSpace`, for Bode, Nyquist, feedback and step responses."""

@@ -13,10 +13,14 @@ def power_spectrum(signal: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarra
     """Return frequencies (Hz) and one-sided power of a uniformly sampled ``signal`` (n,).
 
     Hann-windowed periodogram of the signal less its mean, scaled so that a sine of amplitude a
-    shows a line of a^2/2. ``dt`` is in s; the two arrays have shape (n // 2 + 1,).
+    shows a line of a^2/2. ``dt`` is in s, n at least 2; the two arrays have shape (n // 2 + 1,).
     """
-    from scipy.signal import periodogram
-    return periodogram(signal, 1.0 / dt, 'hann', detrend='constant', scaling='spectrum')
+    count = len(signal)
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
+    lines = np.fft.rfft(window * (signal - np.mean(signal))) / window.sum()
+    power = np.abs(lines) ** 2
+    power[1:(count + 1) // 2] *= 2.0        # the line at half the sampling rate has no mirror
+    return np.fft.rfftfreq(count, dt), power
 
 
 def peaks(signal: np.ndarray, dt: float, most: int = 5, floor: float = 1.0e-3,
@@ -28,12 +32,12 @@ def peaks(signal: np.ndarray, dt: float, most: int = 5, floor: float = 1.0e-3,
     ``scale`` of such signals if that is more. A parabola through the logarithm of three
     neighbouring powers places a line between the bins.
     """
-    from scipy.signal import find_peaks
     signal = np.asarray(signal, dtype=float)
     if len(signal) < 8 or np.ptp(signal) <= STEADY * max(np.abs(signal).max(), LEAST * scale):
         return []
     frequency, power = power_spectrum(signal, dt)
-    found, _ = find_peaks(power, height=floor * power.max())
+    found = _summits(power)
+    found = found[power[found] >= floor * power.max()]
     strongest = found[np.argsort(power[found])[::-1][:most]]
     return [float(frequency[k] + _offset(power[k - 1:k + 2]) * frequency[1]) for k in strongest]
 
@@ -43,10 +47,25 @@ def shedding_lines(cl: np.ndarray, dt: float) -> list[float]:
 
     The trend is taken out first. Frequencies are in the inverse of the unit of ``dt``.
     """
-    from scipy.signal import detrend
-    swing = detrend(cl)
+    swing = _less_trend(cl)
     sheds = swing.std() > SHEDDING * max(abs(np.mean(cl)), 0.1)
     return peaks(swing, dt) if sheds else []
+
+
+def _less_trend(signal: np.ndarray) -> np.ndarray:
+    """Return ``signal`` less the straight line that fits it best."""
+    time = np.arange(len(signal)) - 0.5 * (len(signal) - 1)
+    square = time @ time
+    slope = time @ signal / square if square else 0.0
+    return signal - np.mean(signal) - slope * time
+
+
+def _summits(power: np.ndarray) -> np.ndarray:
+    """Return where ``power`` is above both its neighbours; of a plateau, the middle."""
+    edges = np.flatnonzero(np.diff(power)) + 1          # where a run of equal values begins
+    first, last = edges[:-1], edges[1:] - 1
+    above = (power[first] > power[first - 1]) & (power[last] > power[last + 1])
+    return (first[above] + last[above]) // 2
 
 
 def _offset(power: np.ndarray) -> float:

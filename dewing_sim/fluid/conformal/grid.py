@@ -14,9 +14,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from dewing_sim.fluid.conformal.presets import Preset
+from dewing_sim.roots import bracketed
 
 
 class Strip(NamedTuple):
@@ -43,8 +43,8 @@ class Grid:
         """Return the grid of a preset."""
         step = 2.0 * np.pi / preset.around
         last = preset.rows - 0.5
-        ratio = brentq(lambda r: _geometric(preset.first, r, last) - preset.outermost,
-                       1.0 + 1.0e-6, 1.5)
+        ratio = bracketed(lambda r: _geometric(preset.first, r, last) - preset.outermost,
+                          1.0 + 1.0e-6, 1.5)
         rows = np.arange(preset.rows)
         return cls((np.arange(preset.around) + 0.5) * step,
                    _geometric(preset.first, ratio, rows),

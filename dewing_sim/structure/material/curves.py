@@ -8,10 +8,10 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from dewing_sim import parameters
 from dewing_sim.errors import DewingError
+from dewing_sim.roots import bracketed
 from dewing_sim.structure import elements
 from dewing_sim.structure.material import limits
 from dewing_sim.structure.material.elastomer import Elastomer, diagonal
@@ -151,5 +151,5 @@ def _stress(elastomer: Elastomer, l1: float, l2: float) -> float:
     low, high = (1.0 - 1.0e-9) / volume, 1.5 / volume       # tension lets it swell
     if principal(low)[2] > 0.0:
         low = 0.5 / volume          # an unstable law that pushes
-    l3 = brentq(lambda thickness: principal(thickness)[2], low, high, xtol=1e-15)
+    l3 = bracketed(lambda thickness: principal(thickness)[2], low, high, xtol=1e-15)
     return float(principal(l3)[0])

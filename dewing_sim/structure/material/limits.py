@@ -11,9 +11,9 @@ from collections.abc import Mapping
 from typing import Callable, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from dewing_sim.errors import BadInput
+from dewing_sim.roots import bracketed
 from dewing_sim.schema.numerals import apart
 from dewing_sim.structure.material.elastomer import Elastomer, diagonal
 from dewing_sim.structure.material.law import Law
@@ -62,7 +62,7 @@ def locking_stretch(law: Law, invariants: Callable[[float], tuple[float, float]]
     """
     def overrun(stretch):
         return law.overrun(*invariants(stretch))
-    return brentq(overrun, 1.0, 1.0e6) if overrun(1.0e6) > 0.0 else np.inf
+    return bracketed(overrun, 1.0, 1.0e6) if overrun(1.0e6) > 0.0 else np.inf
 
 
 def equibiaxial_pull_in(elastomer: Elastomer, load: float = 0.0) -> PullIn:
@@ -94,7 +94,7 @@ def _passive_stretch(elastomer: Elastomer, load: float, end: float) -> float:
     def excess(stretch):
         stress = elastomer.cauchy_stress(diagonal((stretch, stretch, stretch ** -2)))
         return stress[0, 0] - stress[2, 2] - load * stretch
-    return brentq(excess, 1.0, end, xtol=1e-14) if load > 0.0 else 1.0
+    return bracketed(excess, 1.0, end, xtol=1e-14) if load > 0.0 else 1.0
 
 
 def _maximum(function: Callable[[float], float], low: float, high: float) -> float:
@@ -102,7 +102,7 @@ def _maximum(function: Callable[[float], float], low: float, high: float) -> flo
     def slope(stretch):
         step = 1.0e-6 * stretch
         return function(stretch + step) - function(stretch - step)
-    return float(brentq(slope, low, high, xtol=1e-12))
+    return float(bracketed(slope, low, high, xtol=1e-12))
 
 
 def require_tension(prestretch: float, slack_voltage: float, voltages: Mapping[str, float],
