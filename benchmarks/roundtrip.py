@@ -40,6 +40,22 @@ def oscillator() -> reduced.Reduced:
         1.69e6, v_squared_max=1.56e6))
 
 
+class Timed:
+    """A plant that notes when it steps, and says so to ``watch(step)``."""
+
+    def __init__(self, plant: Any, times: np.ndarray, watch: Callable):
+        """Note into ``times``."""
+        self.dt, self.observe, self._step = plant.dt, plant.observe, plant.step
+        self._times, self._watch, self._made = times, watch, 0
+
+    def step(self, state: Any, inputs: Any) -> Any:
+        """Return the next state."""
+        self._times[self._made] = perf_counter()
+        self._watch(self._made)
+        self._made += 1
+        return self._step(state, inputs)
+
+
 def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) -> dict[str, Any]:
     """Run ``steps`` lock-steps with nodes in ``children`` processes; return times in ms.
 
@@ -50,16 +66,6 @@ def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) ->
     from dewing_sim.ros import harness
     from dewing_sim.ros.node import SimulatorNode
     times, processes = np.full(steps, np.nan), []
-
-    class Timed(SimulatorNode):
-        """Notes when it steps."""
-
-        def _advance(self, v_squared: float):
-            step = self.lockstep.steps
-            times[step] = perf_counter()
-            if watch:
-                watch(step, processes)
-            super()._advance(v_squared)
 
     with ExitStack() as stack:
         domain = stack.enter_context(harness.reserved_domain())
@@ -73,9 +79,11 @@ def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) ->
         session = stack.enter_context(harness.Session(domain))
         if not children:
             session.add(ControllerNode)
-        simulator = session.add(Timed, {
+        simulator = session.add(SimulatorNode, {
             'run.plant': 'reduced', 'model': str(folder / 'model.npz'),
             'run.duration': 1.0e-4 * steps, 'run.subscribers': max(len(children), 1)})
+        simulator.lockstep.plant = Timed(simulator.plant, times, lambda step: (
+            watch and watch(step, processes)))
         session.spin_until(lambda: simulator.exit_status is not None, PATIENCE)
     if simulator.exit_status:
         raise SystemExit(simulator.reason)

@@ -13,11 +13,12 @@ from dewing_sim.ros import messages, qos
 class Question:
     """The present measurement and how long ago it was published.
 
-    While a listener cannot take a measurement it is `blocked`, and the run waits.
+    While a listener cannot take a measurement it is `blocked`, the run waits, and says so.
     """
 
     def __init__(self, node, resend_period: float):
         """Advertise ``measurement`` on ``node``."""
+        self._status = node.status
         self._publisher = node.create_publisher(JointState, 'measurement', qos.LOOP)
         self._resend_period = resend_period
         self._outputs: Outputs | None = None
@@ -36,8 +37,10 @@ class Question:
         self.offer()
 
     def offer(self) -> None:
-        """Publish the present measurement (again)."""
+        """Publish the present measurement (again), or say that it cannot be taken."""
         self.blocked = not qos.publish(self._publisher, messages.measurement(self._outputs))
+        if self.blocked:
+            self._status.set(messages.WARN, f'{self.missing}: simulated time waits for it')
 
     def repeat(self, now: float) -> None:
         """Publish again what was blocked, or what has had no answer for the resend period."""

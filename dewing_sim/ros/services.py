@@ -32,16 +32,16 @@ class Services:
         self._node.create_service(kind, f'~/{name}', answer)
 
     def _pause(self, wanted: bool) -> Answer:
-        self._node.pause(wanted)
+        self._node.loop.pause(wanted)
         return True, 'paused' if wanted else 'running'
 
     def _step(self) -> Answer:
-        if not self._node.make_steps(self._node.run.step_count):
+        if not self._node.loop.make_steps(self._node.run.step_count):
             return False, 'only when paused, and in lock-step after a command'
         return True, self._at()
 
     def _reset(self) -> Answer:
-        self._node.restart(self._node.built.rest)
+        self._node.loop.restart(self._node.built.rest)
         return True, 'at rest'
 
     def save(self) -> Answer:
@@ -61,7 +61,7 @@ class Services:
     def _restore(self) -> Answer:
         path = self._node.settings.restore or self.rescue
         try:
-            self._node.restart(self._node.built.load(path))
+            self._node.loop.restart(self._node.built.load(path))
         except BadInput as error:
             return False, str(error)
         return True, f'{self._at()}, from {path}'

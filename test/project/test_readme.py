@@ -32,7 +32,8 @@ def test_every_linked_page_exists():
 
 def test_every_published_topic_is_listed():
     sources = ''.join((PROJECT / path).read_text() for path in (
-        'dewing_sim/ros/node.py', 'dewing_sim/ros/telemetry.py', 'dewing_control/node.py'))
+        'dewing_sim/ros/node.py', 'dewing_sim/ros/question.py', 'dewing_sim/ros/telemetry.py',
+        'dewing_control/node.py'))
     topics = re.findall(r"create_publisher\(\w+, '(/?\w+)'", sources)
     topics += re.findall(r"channel\(\s*'(/?\w+)'", sources)
     topics += [each.topic for each in schema(Outputs).quantities if each.topic]

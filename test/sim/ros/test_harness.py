@@ -183,7 +183,7 @@ def test_services_pause_step_reset_and_save(scripted, tmp_path):
     assert call(session, services['pause'], SetBool.Request(data=True)).success
     assert not call(session, services['step'], Trigger.Request()).success
     script.send(1.0e5)
-    session.spin_until(lambda: simulator._pending is not None, PATIENCE)
+    session.spin_until(lambda: simulator.loop.pending is not None, PATIENCE)
     assert simulator.lockstep.steps == 0
     assert call(session, services['step'], Trigger.Request()).message == 'at 0.000100000 s'
     assert call(session, services['save'], Trigger.Request()).success
@@ -201,7 +201,7 @@ def test_a_call_makes_as_many_steps_as_asked_for_and_goes_back_to_what_was_saved
         session, settings):
     simulator = session.add(SimulatorNode, settings | {'run.mode': 'free', 'run.subscribers': 0})
     session.spin_until(lambda: simulator.lockstep.steps > 0, PATIENCE)
-    simulator.pause(True)
+    simulator.loop.pause(True)
     client = simulator.create_client(Trigger, 'simulator/step')
     before = simulator.lockstep.steps
     answer, = simulator.set_parameters([Parameter('run.step_count', value=25)])
@@ -229,11 +229,11 @@ def test_real_time_is_paced_and_late_steps_and_answers_are_counted(session, sett
         'run.mode': 'realtime', 'run.rate': 0.01, 'run.subscribers': 0, 'run.duration': 0.002})
     began = time.monotonic()
     session.spin_until(lambda: simulator.lockstep.steps == 10, PATIENCE)
-    assert simulator._deadlines.missed < 10
+    assert simulator.loop.deadlines.missed < 10
     time.sleep(0.1)                 # ten periods in which nobody spins
     session.spin_until(lambda: simulator.exit_status is not None, PATIENCE)
     assert time.monotonic() - began > 0.2
-    assert simulator._deadlines.missed > 0 and simulator.lockstep.unanswered == 20
+    assert simulator.loop.deadlines.missed > 0 and simulator.lockstep.unanswered == 20
 
 
 def test_a_miss_counts_once_and_is_not_made_up_for():

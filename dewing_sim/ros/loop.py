@@ -1,0 +1,145 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""The loop of the simulator: which commands count, when a step is made, what follows it."""
+
+from time import monotonic
+from typing import Any
+
+from rclpy.clock import Clock, ClockType
+from sensor_msgs.msg import JointState
+
+from dewing_sim.errors import BadInput, RunFailed
+from dewing_sim.lockstep import Deadlines
+from dewing_sim.ros import messages
+
+
+class Loop:
+    """Steps the plant of a `SimulatorNode` on commands, in real time, or freely.
+
+    Each of its three entries, `on_command`, `on_pace` and `make_steps`, ends in one step and the
+    next measurement.
+    """
+
+    def __init__(self, node):
+        """Begin before the first measurement: nothing is stepped until `start`."""
+        self._node, self._run, self.lockstep = node, node.run, node.lockstep
+        self.locked = self._run.mode == 'lockstep'
+        self.paused = self.started = False
+        self.pending: float | None = None       # V^2 that came while paused
+        self._granted = 0                       # steps of a paused run still to be made
+        self.began = monotonic()
+        self.deadlines = Deadlines(
+            node.plant.dt / self._run.rate if self._run.mode == 'realtime' else 0.0)
+        self._pace = node.create_timer(self.deadlines.period, self.on_pace,
+                                       clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._pace.cancel()
+
+    @property
+    def running(self) -> bool:
+        """Whether measurements are published and commands taken."""
+        return self.started and self._node.exit_status is None
+
+    @property
+    def awaits_command(self) -> bool:
+        """Whether a step waits for its command."""
+        return self.running and self.locked and self.pending is None
+
+    def start(self, now: float):
+        """Publish the first measurement."""
+        self.started, self.began = True, now
+        self._ask()
+        self._resume()
+
+    def stop(self):
+        """Make no further step by itself."""
+        self._pace.cancel()
+
+    def on_command(self, message: JointState):
+        """Take a command: step on it, keep it, or say why it is not obeyed."""
+        if not self.running:
+            return
+        stamp = messages.from_stamp(message.header.stamp)
+        if self.locked and not self.lockstep.expects(stamp):
+            return
+        try:
+            v_squared = messages.to_v_squared(message)
+            self.lockstep.check(v_squared)
+        except BadInput as error:
+            self.lockstep.rejected += 1
+            self._node.status.set(messages.WARN, str(error))
+            return
+        if not self.locked:
+            self.lockstep.v_squared = v_squared
+            self._node.question.answered |= stamp == self.lockstep.stamp
+        elif self.paused and not self._granted:
+            self.pending = v_squared
+        else:
+            self._advance(v_squared)
+
+    def on_pace(self):
+        """Make the next step of the modes that wait for no command."""
+        if self._node.exit_status is not None:
+            return
+        if self._node.question.blocked:
+            self._node.question.offer()
+            return
+        if self._run.mode == 'realtime':
+            self.deadlines.begin(monotonic())
+            self.lockstep.unanswered += not self._node.question.answered
+        self._advance(self.lockstep.v_squared)
+
+    def _advance(self, v_squared: float):
+        self.pending, self._granted = None, max(self._granted - 1, 0)
+        try:
+            self.lockstep.advance(v_squared)
+        except RunFailed as error:
+            self._node.finish(1, str(error))
+            return
+        if self._node.status.level != messages.OK:
+            self._node.status.set(messages.OK, 'running')
+        if self._run.save_steps and self.lockstep.steps % self._run.save_steps == 0:
+            self._node.served.save()
+        self._ask()
+        end = self._run.duration
+        if end and self.lockstep.outputs.time > end - 0.5 * self._node.plant.dt:
+            self._node.finish(0, f'finished at {end:g} s')
+
+    def _ask(self):
+        """Publish the present measurement for the first time, and what is due beside it."""
+        self._node.question.ask(self.lockstep.outputs)
+        self._node.telemetry.publish(self.lockstep.outputs)
+
+    def _resume(self):
+        self._node.status.set(messages.OK, 'paused' if self.paused else 'running')
+        if not (self.locked or self.paused):
+            self.deadlines.start(monotonic())
+            self._pace.reset()
+
+    def pause(self, wanted: bool):
+        """Hold simulated time, or go on."""
+        self.paused = wanted
+        if wanted:
+            self._pace.cancel()
+        if self.running:
+            self._resume()
+            if not wanted and self.pending is not None:
+                self._advance(self.pending)
+
+    def make_steps(self, count: int) -> bool:
+        """Make ``count`` steps of a paused run; in lock-step all but the first await commands."""
+        if not (self.running and self.paused
+                and (not self.locked or self.pending is not None)):
+            return False
+        self._granted = count
+        if self.locked:
+            self._advance(self.pending)
+        while not self.locked and self._granted and self.running:
+            self._advance(self.lockstep.v_squared)
+        return True
+
+    def restart(self, state: Any):
+        """Go on from ``state`` at its time."""
+        self.lockstep.restart(state)
+        self.pending, self._granted = None, 0
+        if self.started:
+            self._ask()

@@ -1,0 +1,48 @@
+# Copyright 2026 The dewing authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the simulator says of its run: numbers, and what to beware of."""
+
+from typing import Any
+
+from rclpy.clock import Clock, ClockType
+
+from dewing_sim.ros import messages
+
+PERIOD = 1.0                # s, wall
+
+
+class Report:
+    """Publishes the status of a `SimulatorNode` every `PERIOD`, with a caution if there is one."""
+
+    def __init__(self, node):
+        """Report from now on."""
+        self._node = node
+        node.create_timer(PERIOD, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def publish(self):
+        """Publish level, sentence and numbers."""
+        status, started = self._node.status, self._node.loop.started
+        if not started:
+            status.set(messages.OK, self._node.watch.absent)
+        caution = self._caution(started)
+        if status.level == messages.OK and caution:
+            status.set(messages.WARN, caution)
+        else:
+            status.report()
+
+    def _caution(self, started: bool) -> str:
+        node = self._node
+        controllers = node.watch.controllers
+        if controllers > 1:
+            return f'{controllers} controllers: the first answer to a measurement counts'
+        return (node.question.gone(node.run.subscribers * started)
+                or node.built.caution(node.lockstep.state))
+
+
+def values(node) -> dict[str, Any]:
+    """Return the numbers in the diagnostics of a `SimulatorNode`."""
+    loop, question = node.loop, node.question
+    wall = question.asked - loop.began if loop.started else 0.0
+    return dict(mode=node.run.mode, **node.lockstep.figures(wall), resent=question.resent,
+                missed_deadlines=loop.deadlines.missed,
+                **vars(node.built.monitor(node.lockstep.state)))
