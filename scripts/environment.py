@@ -20,6 +20,7 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[1]
 INGREDIENTS = ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'scripts/environment.py')
 EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder')
+SHARED = ('config', 'launch')           # folders of files that ROS looks for
 REASONS = {
     'system': 'ROS: the sourced system ROS is used, since AMENT_PREFIX_PATH is set and this '
               'Python imports rclpy; the ROS wheels are left out.',
@@ -45,8 +46,16 @@ def recipe(folder: Path, source: str, requirements: Path | None) -> str:
     ingredients = [requirements] if requirements else [PROJECT / name for name in INGREDIENTS]
     for path in ingredients:
         digest.update(path.read_bytes())
+    if not requirements:
+        digest.update('\n'.join(shared_files()).encode())
     version = '.'.join(map(str, sys.version_info[:2]))
     return f'{digest.hexdigest()}\nPython {version}\nROS {source}\n{folder}\n{PROJECT}\n'
+
+
+def shared_files() -> list[str]:
+    """Return the files that are to stand in the share folder, relative to the project."""
+    return sorted(str(path.relative_to(PROJECT)) for name in SHARED
+                  for path in (PROJECT / name).iterdir() if path.is_file())
 
 
 def create(folder: Path, source: str) -> None:
@@ -115,13 +124,18 @@ def _show_progress(lines, file) -> None:
 def add_to_ament_index(folder: Path) -> None:
     """Put marker, share and executables where ``ros2 run`` looks, which an editable install omits.
 
-    The executables are links to the console scripts, which name this environment's Python.
+    The executables are links to the console scripts, which name this environment's Python. Every
+    file is a link of its own: ``ros2 launch`` does not look into a folder that is one.
     """
     marker = folder / 'share' / 'ament_index' / 'resource_index' / 'packages' / 'dewing'
     marker.parent.mkdir(parents=True, exist_ok=True)
     marker.touch()
     share = folder / 'share' / 'dewing'
-    links = {share / name: PROJECT / name for name in ('config', 'launch', 'package.xml')}
+    for name in SHARED:
+        if (share / name).is_symlink():         # as older versions had it
+            (share / name).unlink()
+        shutil.rmtree(share / name, ignore_errors=True)
+    links = {share / name: PROJECT / name for name in ('package.xml', *shared_files())}
     links |= {folder / 'lib' / 'dewing' / name: Path('..', '..', 'bin', f'dewing_{name}')
               for name in EXECUTABLES}
     for link, target in links.items():

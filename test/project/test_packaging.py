@@ -57,14 +57,30 @@ def test_every_data_file_exists_and_the_index_marker_is_among_them(setup):
 
 def test_an_editable_environment_has_every_file_that_an_installed_one_has(setup, tmp_path):
     """``make venv`` links what setup.py copies: no documented command may miss a file."""
-    runpy.run_path(str(PROJECT / 'scripts' / 'environment.py'))['add_to_ament_index'](tmp_path)
+    environment = runpy.run_path(str(PROJECT / 'scripts' / 'environment.py'))
+    old = tmp_path / 'share' / 'dewing' / 'config'      # as version 0.2.0 had it
+    old.parent.mkdir(parents=True)
+    old.symlink_to(PROJECT / 'config')
     (tmp_path / 'bin').mkdir()
     for name in EXECUTABLES:
         (tmp_path / 'bin' / f'dewing_{name}').touch()
+    for _ in range(2):
+        environment['add_to_ament_index'](tmp_path)
+    found = {}
+    for folder, _, names in os.walk(tmp_path):          # as `ros2 launch` looks: not into links
+        found |= {Path(folder, name).relative_to(tmp_path): Path(folder, name) for name in names}
     for folder, names in setup['data_files']:
-        missing = [name for name in names
-                   if not (tmp_path / folder / Path(name).name).is_file()]
-        assert not missing, folder
+        for name in names:
+            assert found[Path(folder, Path(name).name)].is_file(), name
+    assert (PROJECT / 'config' / 'paper.yaml').is_file()
+
+
+def test_a_new_launch_file_makes_the_environment_anew(tmp_path, monkeypatch):
+    environment = runpy.run_path(str(PROJECT / 'scripts' / 'environment.py'))
+    before = environment['recipe'](tmp_path, 'none', None)
+    assert environment['recipe'](tmp_path, 'none', None) == before
+    monkeypatch.setitem(environment['recipe'].__globals__, 'SHARED', ('config',))
+    assert environment['recipe'](tmp_path, 'none', None) != before
 
 
 @pytest.mark.parametrize('name', EXECUTABLES)
