@@ -17,7 +17,7 @@ from dewing_control.trial.closed_loop import controller, same_memory
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import Identity
-from dewing_sim.ros import harness, messages, qos
+from dewing_sim.ros import given_parameters, harness, messages, qos
 from dewing_sim.ros.status import Status
 
 
@@ -167,7 +167,11 @@ def _names(settings: ControllerSettings) -> set[str]:
 
 def settings_of(node: Node) -> ControllerSettings:
     """Return the settings that the parameters of ``node`` describe, declared and changeable."""
-    settings = parameters.load('controller', ControllerSettings, messages.take_overrides(node))
+    given = messages.take_overrides(node)
+    kind = {name: given[name] for name in ('kind',) if name in given}   # it may bring sections
+    schema = type(parameters.load('controller', ControllerSettings, kind))
+    changes, = given_parameters.take(node, schema, given=given)
+    settings = parameters.load('controller', ControllerSettings, changes)
     messages.declare(node, settings, read_only=False)
     return settings
 

@@ -23,6 +23,8 @@ from dewing_sim.schema import plugins
 class _ByKind:
     """Settings whose fields depend on their ``kind``; see `parameters.from_mapping`."""
 
+    ros_node = 'controller'
+
     @classmethod
     def chosen(cls, mapping: Mapping) -> tuple[type, Mapping]:
         """Return the schema for the kind in ``mapping``, and what of ``mapping`` is for it."""

@@ -157,6 +157,7 @@ class Case:
     gust: Gust
     rigid_motion: RigidMotion
 
+    ros_node = 'simulator'
     # A disturbance beyond the Nyquist frequency of the steps would act as a slower one.
     relations = (
         Bound('disturbance.frequency', 'numerics.time_step', '1/(2 {})',

@@ -30,12 +30,14 @@ from dewing_sim.schema import (
     count,
     describe,
     fields,
+    flag,
     from_mapping,
     leaves,
     numbers,
     outside_modules,
     real,
     replace,
+    ros_file,
     shown,
     text,
     to_mapping,
@@ -44,9 +46,9 @@ from dewing_sim.schema import (
 
 __all__ = [
     'Actuation', 'Case', 'Disturbance', 'Flow', 'Gust', 'Membrane', 'Numerics', 'RigidMotion',
-    'check', 'choice', 'config_file', 'count', 'describe', 'fields', 'from_mapping', 'from_yaml',
-    'leaves', 'load', 'numbers', 'outside_modules', 'parse_assignment', 'real', 'replace', 'text',
-    'to_mapping', 'to_yaml',
+    'check', 'choice', 'config_file', 'count', 'describe', 'fields', 'flag', 'from_mapping',
+    'from_yaml', 'leaves', 'load', 'numbers', 'outside_modules', 'parse_assignment', 'real',
+    'replace', 'text', 'to_mapping', 'to_yaml',
 ]
 
 
@@ -100,21 +102,20 @@ def load(name: str, schema: type[Section] = Case, changes: Mapping[str, Any] | N
 
 
 def from_yaml(text: str, schema: type[Section] = Case, origin: str = 'YAML') -> Section:
-    """Build a schema instance from ROS-format YAML; ``origin`` opens the messages of errors."""
+    """Build a schema instance from ROS-format YAML; ``origin`` opens the messages of errors.
+
+    It takes what the file has for every node and for ``schema.ros_node``, as ROS does.
+    """
     tree = yaml_text.read(text, f'{origin}: not valid YAML', strict=True)
     try:
-        parameters = tree['/**']['ros__parameters']
-    except (TypeError, KeyError):
-        raise BadInput(f'{origin}: parameters are expected below /**: ros__parameters:') from None
-    try:
-        return from_mapping(schema, parameters)
+        return from_mapping(schema, ros_file.below(tree, getattr(schema, 'ros_node', '')))
     except BadInput as error:
         raise BadInput(f'{origin}: {error}') from None
 
 
-def to_yaml(section: Any) -> str:
-    """Return the ROS-format YAML from which `from_yaml` rebuilds ``section``."""
-    tree = {'/**': {'ros__parameters': _without_empty(to_mapping(section))}}
+def to_yaml(section: Any, key: str = '/**') -> str:
+    """Return the ROS-format YAML, below ``key``, from which `from_yaml` rebuilds ``section``."""
+    tree = {key: {ros_file.PARAMETERS: _without_empty(to_mapping(section))}}
     return yaml.safe_dump(tree, sort_keys=False)
 
 

@@ -45,3 +45,5 @@ class SimulatorSettings:
     save: str = text('npz file for the last state; after a failure dewing_state.npz if empty')
     restore: str = text('npz file of a saved state to start from, the rest state if empty')
     run: Run
+
+    ros_node = 'simulator'

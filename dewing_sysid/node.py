@@ -18,7 +18,7 @@ from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
 from dewing_sim.files import check_free
 from dewing_sim.identity import Identity
-from dewing_sim.ros import harness, qos
+from dewing_sim.ros import given_parameters, harness, qos
 from dewing_sim.ros import messages as common
 from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
@@ -33,10 +33,9 @@ MATRICES = {'a': ('state', 'state'), 'b': ('state', 'input'), 'c': ('output', 's
 
 def settings_of(node: Node) -> tuple[Settings, NodeSettings]:
     """Return the settings that the parameters of ``node`` describe, declared."""
-    given = common.take_overrides(node)
-    own = {name: given.pop(name) for name in NODE_DEFAULTS.keys() & given.keys()}
+    own, changes = given_parameters.take(node, NodeSettings, Settings)
     node_settings = parameters.from_mapping(NodeSettings, NODE_DEFAULTS | own)
-    settings = parameters.load('sysid', Settings, given)
+    settings = parameters.load('sysid', Settings, changes)
     common.declare(node, settings, read_only=True)
     common.declare(node, node_settings, read_only=True)
     return settings, node_settings

@@ -58,6 +58,8 @@ class Settings:
     fresh: Fresh
     realisation: Realisation
 
+    ros_node = 'sysid'
+
 
 @dataclass(frozen=True)
 class NodeSettings:

@@ -159,4 +159,4 @@ def _write_settings(folder: Path, settings: Any, overwrite: bool) -> None:
     if of_kind(settings.kind).needs_model:
         settings = dataclasses.replace(settings, model=str((folder / 'model.npz').resolve()))
     with new_file(folder / 'controller.yaml', overwrite) as file:
-        file.write(parameters.to_yaml(settings).encode())
+        file.write(parameters.to_yaml(settings, '/**/controller').encode())

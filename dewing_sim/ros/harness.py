@@ -184,10 +184,13 @@ def environment(domain: int, log_folder: str) -> dict[str, str]:
 
 
 def start_node(module: str, parameters: Mapping[str, Any], env: Mapping[str, str],
-               **options) -> subprocess.Popen:
-    """Start ``module`` (with a `main`) as a process in a group of its own."""
+               arguments: Sequence[str] = (), **options) -> subprocess.Popen:
+    """Start ``module`` (with a `main`) as a process in a group of its own.
+
+    ``arguments`` are further ones of ROS, such as remappings; ``options`` are those of `Popen`.
+    """
     code = f'import sys; from {module} import main; sys.exit(main())'
-    arguments = ['--ros-args']
+    arguments = ['--ros-args', *arguments]
     for name, value in parameters.items():
         arguments += ['-p', f'{name}:={_yaml_word(value)}']
     return subprocess.Popen([sys.executable, '-c', code, *arguments], env=dict(env),

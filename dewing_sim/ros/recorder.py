@@ -19,12 +19,13 @@ from rclpy.qos import QoSProfile
 from dewing_sim import parameters
 from dewing_sim.parameters import text
 from dewing_sim.records import bag
-from dewing_sim.ros import harness, messages, qos
+from dewing_sim.ros import given_parameters, harness, messages, qos
 
 DISCOVERY_PERIOD = 0.05     # s
 WRITE_PERIOD = 0.02         # s
 FLUSH_PERIOD = 0.5          # s
 COMMON = ('/clock', '/diagnostics')
+DEFAULTS = dict(output='dewing.mcap')
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,8 @@ class RecorderNode(Node):
     def __init__(self, overrides: Mapping[str, Any] | None = None, **options):
         super().__init__('recorder', namespace='dewing', **harness.overrides(overrides),
                          **options)
-        given = {'output': 'dewing.mcap'} | messages.take_overrides(self)
-        self.settings = parameters.from_mapping(RecorderSettings, given)
+        given, = given_parameters.take(self, RecorderSettings)
+        self.settings = parameters.from_mapping(RecorderSettings, DEFAULTS | given)
         messages.declare(self, self.settings, read_only=True)
         self.exit_status: int | None = None
         self.reason = ''

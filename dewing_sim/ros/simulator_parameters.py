@@ -6,7 +6,7 @@ from rclpy.node import Node
 
 from dewing_sim import parameters
 from dewing_sim.parameters import Case
-from dewing_sim.ros import messages
+from dewing_sim.ros import given_parameters, messages
 from dewing_sim.settings import SimulatorSettings
 
 LIVE = ('run.step_count',)  # may change while the node runs
@@ -14,11 +14,9 @@ LIVE = ('run.step_count',)  # may change while the node runs
 
 def settings_of(node: Node) -> tuple[SimulatorSettings, Case]:
     """Return the settings and the case that the parameters of ``node`` describe, declared."""
-    given = messages.take_overrides(node)
-    own = {name for name, _field in parameters.fields(SimulatorSettings)}
-    settings = parameters.load('simulator', SimulatorSettings,
-                               {name: given.pop(name) for name in own & given.keys()})
-    case = parameters.load(settings.case, Case, given)
+    own, changes = given_parameters.take(node, SimulatorSettings, Case)
+    settings = parameters.load('simulator', SimulatorSettings, own)
+    case = parameters.load(settings.case, Case, changes)
     messages.declare(node, settings, read_only=True, live=LIVE)
     messages.declare(node, case, read_only=True, open_fields=messages.constants(case))
     return settings, case

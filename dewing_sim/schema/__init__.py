@@ -9,6 +9,7 @@ from dewing_sim.schema.declarations import (
     count,
     describe,
     fields,
+    flag,
     from_mapping,
     leaves,
     numbers,
@@ -22,6 +23,7 @@ from dewing_sim.schema.declarations import (
 from dewing_sim.schema.named_numbers import Numbers
 
 __all__ = [
-    'Numbers', 'Section', 'check', 'choice', 'count', 'describe', 'fields', 'from_mapping',
-    'leaves', 'numbers', 'outside_modules', 'real', 'replace', 'shown', 'text', 'to_mapping',
+    'Numbers', 'Section', 'check', 'choice', 'count', 'describe', 'fields', 'flag',
+    'from_mapping', 'leaves', 'numbers', 'outside_modules', 'real', 'replace', 'shown', 'text',
+    'to_mapping',
 ]

@@ -35,6 +35,11 @@ def count(meaning: str, low: int, high: int, **more: Any) -> Any:
     return _field(int, '', meaning, low=low, high=high, **more)
 
 
+def flag(meaning: str, **more: Any) -> Any:
+    """Declare a field that is true or false."""
+    return _field(bool, '', meaning, **more)
+
+
 def choice(meaning: str, *options: str, **more: Any) -> Any:
     """Declare a field that takes one of a few words.
 
@@ -153,7 +158,8 @@ def _checked_numbers(name: str, field: dataclasses.Field, value: Any) -> Numbers
     return Numbers(value)
 
 
-_TYPE_NAMES = {float: 'floating-point number', int: 'whole number', str: 'word'}
+_TYPE_NAMES = {float: 'floating-point number', int: 'whole number', str: 'word',
+               bool: 'truth value, true or false'}
 # YAML 1.1 reads 1e-4 and 1.0e4 as words, and ROS refuses an integer for a double.
 _FLOAT_HINT = ' (write it with a decimal point and a signed exponent, as in 1.0 or 2.0e+4)'
 
@@ -234,6 +240,7 @@ def replace(section: Section, changes: Mapping[str, Any]) -> Section:
         for key in path:
             target = target.setdefault(key, {}) if isinstance(target, dict) else None
         if not isinstance(target, dict):
-            raise BadInput(f"{name} is not a parameter; sections here: {', '.join(mapping)}")
+            raise BadInput(f'{name} is not a parameter; known here: '
+                           f'{", ".join(to_mapping(section))}')
         target[last] = value
     return from_mapping(type(section), mapping)

@@ -53,7 +53,8 @@ def test_the_time_step_for_real_time_is_one_that_the_grid_bears(name):
 def test_a_shipped_file_is_in_ros_format_and_says_what_it_is(name):
     text = (CONFIG / f'{name}.yaml').read_text()
     assert text.startswith('# ')
-    assert list(yaml.safe_load(text)) == ['/**']
+    node = SCHEMAS.get(name, Case).ros_node
+    assert list(yaml.safe_load(text)) == [f'/**/{node}'], 'a file is for one node'
 
 
 @pytest.mark.parametrize('name', CASES)

@@ -174,10 +174,10 @@ def test_sections_are_immutable():
 
 
 @pytest.mark.parametrize('text, complaint', [
-    ('', 'below /\\*\\*: ros__parameters'),
-    ('just words', 'below /\\*\\*: ros__parameters'),
-    ('[1, 2]', 'below /\\*\\*: ros__parameters'),
-    ('/**: {parameters: {}}', 'below /\\*\\*: ros__parameters'),
+    ('', 'below /\\*\\* or /\\*\\*/simulator: ros__parameters'),
+    ('just words', 'below /\\*\\* or /\\*\\*/simulator: ros__parameters'),
+    ('[1, 2]', 'below /\\*\\* or /\\*\\*/simulator: ros__parameters'),
+    ('/**: {parameters: {}}', 'below /\\*\\* or /\\*\\*/simulator: ros__parameters'),
     ('/**: {ros__parameters: }', 'expected keys and values'),
     ('/**: {ros__parameters: {flow: 1', 'not valid YAML'),
     ('a:\tb: c', 'not valid YAML'),
