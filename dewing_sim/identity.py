@@ -116,6 +116,17 @@ class Identity:
         case = from_mapping(Case, self.case) if self.case else None
         return require_reference(output, value, case)
 
+    def require_response(self) -> None:
+        """Raise `BadInput` if V^2 moves nothing, as it does where the membrane lies flat.
+
+        V^2 changes the tension, which acts through the curvature: without a passive camber the
+        outputs respond by rounding errors. A plant without any camber among its outputs passes.
+        """
+        known = [name for name in ('camber_mean', 'camber_max')
+                 if getattr(self, name) is not None]
+        if known:
+            self.passive(max(known, key=lambda name: abs(getattr(self, name))))
+
     def checked(self) -> 'Identity':
         """Return self; raise `BadInput` unless cambers are finite and other numbers positive."""
         for name in ('dt', 'camber_mean', 'camber_max', 'v_squared_slack', 'v_squared_max'):

@@ -41,9 +41,11 @@ def identify(records: dict[str, Record], settings: Settings, identity: Identity,
              ) -> Identification:
     """Realise a model from the record `EXPERIMENT` and judge it on all of them.
 
-    Raises `BadInput` if an output does not respond, if the record is too short for the window or
-    the order, or if its time step is not that of the plant.
+    Raises `BadInput` if an output does not respond, as none does of a membrane that lies flat, if
+    the record is too short for the window or the order, or if its time step is not that of the
+    plant.
     """
+    identity.require_response()
     measured, chosen, scale = records[EXPERIMENT], settings.realisation, time_scale(identity)
     if not np.isclose(measured.dt, identity.dt, rtol=1e-9):
         raise BadInput(f'the record has dt = {measured.dt:g} s, the plant {identity.dt:g} s')

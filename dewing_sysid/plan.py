@@ -59,8 +59,9 @@ def make(settings: Settings, identity: Identity, names: Sequence[str] | None = N
     """Return the runs that ``settings`` ask of a plant, about the rest voltage of its case.
 
     Raises `BadInput` if a run would exceed the admissible voltage or slacken the membrane, if an
-    output is unknown or if the record is shorter than the window.
+    output is unknown, if the record is shorter than the window or if the membrane lies flat.
     """
+    identity.require_response()
     dt, chosen = identity.dt, settings.experiment
     rest = case_of(identity).actuation.voltage**2
     length, window, fresh_length = (

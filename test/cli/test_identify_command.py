@@ -88,7 +88,7 @@ def test_the_wing_itself_is_identified():
     (['--from', 'missing.npz'], 'missing.npz: no such file'),
     (['--from', 'missing.mcap'], 'missing.mcap: cannot be read'),
     (['--from', 'x.npz', '--outputs', 'cl'], 'leave out --outputs or --from'),
-    (['--settings', 'paper'], 'is not a parameter'),
+    (['--settings', 'paper'], 'parameters are expected below'),
     (['--out', '.'], '. is a folder'),
 ])
 def test_bad_input_ends_with_status_2_and_one_sentence(capsys, arguments, complaint):

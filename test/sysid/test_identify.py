@@ -53,6 +53,20 @@ def pulsed():
     return found_on(SyntheticPlant(), settings())
 
 
+def test_a_membrane_that_lies_flat_is_not_identified(pulsed):
+    """What V^2 moves without a passive camber are rounding errors, and no model of it is made."""
+    flat = replace(PAPER, camber_mean=3.0e-12, camber_max=-4.0e-12)
+    complaint = r'the passive camber is -4e-12 m, less than 0.001 of y_ref .* angle of attack'
+    with pytest.raises(BadInput, match=complaint):
+        identify_plant(SyntheticPlant(), None, flat, settings())        # before any step
+    with pytest.raises(BadInput, match=complaint):
+        identify(pulsed.records, settings(), flat)
+    deep = replace(PAPER, camber_mean=3.0e-12, camber_max=-4.0e-5)      # an S, or upside down
+    assert plan.make(settings(), deep).names == plan.make(settings(), PAPER).names
+    no_camber = replace(PAPER, camber_mean=None, camber_max=None)
+    assert plan.make(settings(), no_camber, ('cl',)).names == ('cl',)
+
+
 def test_pulse_gives_the_poles_of_the_plant(pulsed):
     frequency, damping = pulsed.model.modes()
     assert frequency[-3:] == pytest.approx(FREQUENCIES, rel=1e-6)

@@ -205,6 +205,16 @@ def test_a_plant_that_does_not_know_its_case_is_refused(session, model, tmp_path
     assert 'does not say which case it is' in node.reason
 
 
+def test_a_plant_that_lies_flat_ends_with_a_sentence_before_any_step(session, model, tmp_path):
+    whole = Model.load(model)
+    dataclasses.replace(whole, operating_outputs=0.0 * whole.operating_outputs).save(
+        model, overwrite=True)
+    simulator, node = start(session, model, tmp_path)
+    session.spin_until(lambda: node.exit_status is not None, PATIENCE)
+    assert node.exit_status == 1 and 'the passive camber is 0 m' in node.reason
+    assert simulator.lockstep.steps == 0
+
+
 def test_records_of_the_node_carry_the_identity(session, model, tmp_path):
     _, node = start(session, model, tmp_path)
     session.spin_until(lambda: node.found is not None, PATIENCE)
