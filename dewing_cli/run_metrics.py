@@ -51,6 +51,6 @@ def averages(late: History, reference_deflection: float) -> dict[str, float]:
     deviation of Cl.
     """
     means = {mean_name(name): float(column.mean()) for name, column in late.columns.items()
-             if name not in ('time', 'v_squared')}
+             if name not in ('time', 'v_squared', 'clipped')}
     return {**means, 'cl_rms': float(late.cl.std()),
             'y_star': means['camber_max'] / reference_deflection}

@@ -81,6 +81,9 @@ class Actuation:
 
     voltage: float = real('V', 'voltage of the rest state', 0.0, 1.0e5)
     voltage_limit: float = real('V', 'largest admissible voltage', 0.0, 1.0e5)
+    slack_margin: float = real(
+        '-', 'share of V^2 at the loss of tension of the present shape that no command reaches, '
+        '0: no clip', 0.0, 0.9, default=0.05)
     breakdown_field: float = real(
         'V/m', 'true field above which a breakdown is warned about', 1.0e5, 1.0e10)
     amplifier_slew_rate: float = real(

@@ -75,6 +75,7 @@ class LockStep:
         return dict(
             simulated_time=self.outputs.time, v_squared=self.v_squared, steps=self.steps,
             stale=self.stale, rejected=self.rejected, unanswered=self.unanswered,
+            clipped=self.outputs.clipped or 0,
             rtf=self.steps * self.plant.dt / wall if wall else 0.0,
             ms_per_step=1.0e3 * self.plant_seconds / made,
             overhead_ms_per_step=1.0e3 * max(wall - self.plant_seconds, 0.0) / made)

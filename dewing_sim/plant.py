@@ -43,6 +43,8 @@ class Outputs:
     electric_field: float | None = output('V/m', 'largest true field V/h along the chord')
     capacitance: float | None = output('F/m', 'capacitance of the electrodes, per unit span')
     coupling_iterations: int | None = output('-', 'coupling iterations of the step', kind=int)
+    clipped: int | None = output('-', 'steps so far whose V^2 was clipped to keep the tension',
+                                 kind=int)
     x: np.ndarray | None = output('m', 'membrane nodes along the chord', kind=np.ndarray)
     y: np.ndarray | None = output('m', 'membrane nodes across the chord', kind=np.ndarray)
     pressure_jump: np.ndarray | None = output('Pa', 'pressure below minus above',

@@ -25,3 +25,4 @@ class State:
     iterations: int = 0             # coupling iterations of the last step
     residual: float = 0.0           # its last change of the shape, relative to its deflection
     jump_history: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    clipped: int = 0                # steps so far whose V^2 was clipped, see `structure.bearable`

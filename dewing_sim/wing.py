@@ -8,6 +8,7 @@ changes.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from dewing_sim.rest import trim
 from dewing_sim.scales import Scales
 from dewing_sim.state import State
 from dewing_sim.structure import elements
+from dewing_sim.structure.bearable import Bearable
 from dewing_sim.structure.dynamics.step import Operator
 from dewing_sim.structure.material.elastomer import VACUUM_PERMITTIVITY
 from dewing_sim.structure.material.limits import require_tension
@@ -54,7 +56,8 @@ class Wing:
             case.membrane.prestretch)
         require_tension(case.membrane.prestretch, math.sqrt(self.v_squared_slack), {
             f'actuation.{name} =': getattr(case.actuation, name)
-            for name in ('voltage', 'voltage_limit')})
+            for name in ('voltage', 'voltage_limit')}, case.actuation.slack_margin)
+        self.bearable = Bearable(self.membrane, case.actuation.slack_margin)
         self.amplifier = Amplifier.of(case.actuation)
         self.sources = Sources.of(case, self.scales, wall_pressure, gust, motion)
         self.case = engine_choice.settled(case, self.membrane, self.scales,
@@ -76,15 +79,19 @@ class Wing:
     def step(self, state: State, inputs: Inputs) -> State:
         """Return the state one ``dt`` later with ``inputs`` held, beside the wing's own sources.
 
-        The amplifier, ideal by default, makes the electrodes' V^2 of the command. Raises
-        `BadInput` for a V^2 that is negative or not finite, `NotConverged`, `Diverged` or `Slack`
-        with the last good state.
+        The amplifier, ideal by default, makes the electrodes' V^2 of the command, which is
+        clipped below the loss of tension of the present shape. Raises `BadInput` for a V^2 that
+        is negative or not finite, `NotConverged`, `Diverged` or `Slack` with the last good state.
         """
         if not 0.0 <= inputs.v_squared < math.inf:
             raise BadInput(f'v_squared = {inputs.v_squared!r} V^2 is out of range: zero or more')
         v_squared = self.amplifier.drive(state.v_squared, inputs.v_squared, self.dt)
-        acting = self.sources.at((state.step + 1) * self.dt, inputs._replace(v_squared=v_squared))
-        return self.couple(state, acting, self._coupling)
+        bearable = self.bearable(state.motion, state.v_squared)
+        clipped = state.clipped + (v_squared > bearable)
+        acting = self.sources.at((state.step + 1) * self.dt,
+                                 inputs._replace(v_squared=min(v_squared, bearable)))
+        after = self.couple(state, acting, self._coupling)
+        return replace(after, clipped=clipped) if clipped else after
 
     def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> State:
         """Advance flow and membrane by one step; failures carry ``state`` and its time."""
@@ -125,7 +132,7 @@ class Wing:
             tension=self.scales.tension * float(sheet.tension.sum()) / sheet.tension.size,
             electric_field=math.sqrt(state.v_squared) / (chord * float(sheet.thickness.min())),
             capacitance=self._permittivity * electrode_ratio(x, y, sheet.thickness),
-            coupling_iterations=state.iterations,
+            coupling_iterations=state.iterations, clipped=state.clipped,
             x=chord * x, y=chord * y,
             pressure_jump=self.scales.pressure * np.interp(x, self._centres, loads.jump))
 

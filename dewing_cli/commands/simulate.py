@@ -159,6 +159,7 @@ def _metrics(arguments, case: Case, loop: Loop, history, laps: Laps) -> dict:
         'dt': loop.plant.dt, 'steps': len(history), 'duration': end, 'averaged_from': start,
         **averages(late, loop.plant.reference_deflection), **_relative(late, loop),
         'v_min': float(late.voltage.min()), 'v_max': float(late.voltage.max()),
+        'clipped_steps': int(history.clipped[-1]),
         'rtf': end / laps.total, 'ms_per_step': 1.0e3 * laps.best(),
         'threads': numba.get_num_threads(),
         'spectrum_peaks_hz': peaks(late.cl, loop.plant.dt, scale=1.0),

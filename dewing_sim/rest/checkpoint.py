@@ -16,6 +16,7 @@ from dewing_sim.structure.dynamics.step import Motion
 
 FORMAT = 4
 RENAMED = {'still_jumps': 'jump_history'}      # since format 3, which is read as well
+LATER = ('clipped',)                           # which older files of this format do not hold
 SECTIONS = ('flow', 'motion')
 
 
@@ -52,7 +53,7 @@ def _read(path: str | Path) -> tuple[State, Case]:
         values = {'flow': _section(engines.find(case.numerics.engine).state, 'flow', arrays),
                   'motion': _section(Motion, 'motion', arrays)}
         for field in dataclasses.fields(State):
-            if field.name not in SECTIONS:
+            if field.name not in SECTIONS and (field.name in arrays or field.name not in LATER):
                 values[field.name] = _value(arrays[field.name])
         return State(**values), case
 

@@ -93,7 +93,8 @@ def first_frequency(wing: Wing) -> float:
 def fingerprint(wing: Wing) -> str:
     """Return a hash of all that the rest state depends on: the case and the solver's sources."""
     case = to_mapping(wing.case)
-    del case['disturbance'], case['gust'], case['rigid_motion'], case['actuation']['voltage_limit']
+    del case['disturbance'], case['gust'], case['rigid_motion']
+    del case['actuation']['voltage_limit'], case['actuation']['slack_margin']
     digest = hashlib.sha256(yaml.safe_dump(case).encode())
     sources = machine.fingerprint(type(wing).__module__, *outside_modules(wing.case))
     digest.update(sources.encode())

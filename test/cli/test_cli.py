@@ -25,7 +25,7 @@ QUICK = ['--grid', 'fast', '--set', 'numerics.trim_time=0.1', '--quiet']
 SIMULATE_KEYS = {
     'cl_mean', 'cl_rms', 'cd_mean', 'y_star', 'camber_max', 'camber_max_x_c', 'camber_mean',
     'tension', 'v_min', 'v_max', 'rtf', 'ms_per_step', 'coupling_iterations_mean',
-    'spectrum_peaks_hz', 'slip_max', 'courant_max', 'edge_courant_max'}
+    'spectrum_peaks_hz', 'slip_max', 'clipped_steps', 'courant_max', 'edge_courant_max'}
 PLATE_KEYS = {'cl_mean', 'cl_rms', 'cd_mean', 'cd_rms', 'cm_mean', 'strouhal', 'ms_per_step',
               'cells', 'dt', 'engine'}
 

@@ -11,6 +11,7 @@ import pytest
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Slack
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.lockstep import LockStep
 from dewing_sim.plant import SCALARS, rollout
 from dewing_sim.rest import checkpoint, trim
 from dewing_sim.wing import Wing
@@ -72,6 +73,7 @@ def test_voltage_lowers_the_tension_and_raises_mean_camber_and_lift(fast, fast_r
 RESTART = """
 import sys
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.lockstep import LockStep
 from dewing_sim.rest import checkpoint
 from dewing_sim.wing import Wing
 path, out = sys.argv[1:]
@@ -112,10 +114,52 @@ def test_voltages_beyond_the_loss_of_tension_are_refused():
             Wing(parameters.load('paper', changes=changes))
 
 
-def test_a_membrane_gone_slack_stops_with_the_last_good_state(fast, fast_rest):
+def test_a_limit_within_the_margin_of_the_loss_of_tension_is_refused():
+    with pytest.raises(BadInput, match='actuation.voltage_limit = 1280 V is out of range: at most'
+                                       ' 1267 V with actuation.slack_margin = 0.05'):
+        Wing(parameters.load('paper', changes={'actuation.voltage_limit': 1280.0}))
+
+
+def test_a_membrane_gone_slack_stops_with_the_last_good_state(fast_rest):
+    unclipped = Wing(parameters.load('paper', changes=FAST | {'actuation.slack_margin': 0.0}))
     with pytest.raises(Slack, match='slack membrane') as caught:
-        list(rollout(fast, fast_rest, lambda _: Inputs(1500.0**2), 100))
+        list(rollout(unclipped, fast_rest, lambda _: Inputs(1500.0**2), 100))
     assert caught.value.state.step < 100
+
+
+def test_v_squared_is_clipped_before_the_membrane_goes_slack(fast, fast_rest):
+    run = [outputs for _, outputs in rollout(
+        fast, fast_rest, lambda outputs: Inputs(1500.0**2 * (outputs.clipped < 7)), 10)]
+    assert [outputs.clipped for outputs in run] == [1, 2, 3, 4, 5, 6, 7, 7, 7, 7]
+    held = np.array([outputs.v_squared for outputs in run])
+    assert held[:7] == pytest.approx(0.95 * fast.v_squared_slack, rel=1.0e-3)
+    assert np.all(held[7:] == 0.0) and min(outputs.tension for outputs in run) > 0.0
+
+
+def test_clipped_steps_are_counted_for_the_diagnostics(fast, fast_rest):
+    lockstep = LockStep(fast, fast_rest, 1500.0**2)
+    for _ in range(3):
+        lockstep.advance(1500.0**2)
+    lockstep.advance(0.0)
+    assert lockstep.figures(1.0)['clipped'] == 3
+
+
+def test_the_full_limit_in_a_strong_disturbance_does_not_slacken_the_membrane():
+    def limit_on_and_off(margin: float):
+        wing = Wing(parameters.load('realtime', changes={
+            'numerics.time_step': 1.0e-4, 'numerics.trim_time': 5.0,
+            'disturbance.pressure': 0.5, 'disturbance.frequency': 40.0,
+            'actuation.slack_margin': margin}))
+        limit, state = wing.case.actuation.voltage_limit**2, wing.rest()
+        for step in range(520):
+            before = state
+            state = wing.step(state, Inputs(limit * (step // 35 % 2 == 0)))
+            yield before, state
+    with pytest.raises(Slack, match='at 1250 V and loses it at 124'):
+        assert not any(after.clipped for _, after in limit_on_and_off(0.0))
+    clips = [after.v_squared for before, after in limit_on_and_off(0.05)
+             if after.clipped > before.clipped]
+    assert len(clips) > 10 and max(clips) < 1250.0**2
 
 
 def test_a_file_that_is_no_state_is_refused(tmp_path):

@@ -7,6 +7,7 @@ thickness pulls in under constant voltage; the sheet snaps to the branch beyond,
 stiffens enough to make the voltage rise again (Zhao and Suo, doi 10.1063/1.2768641).
 """
 
+import math
 from collections.abc import Mapping
 from typing import Callable, NamedTuple
 
@@ -106,19 +107,25 @@ def _maximum(function: Callable[[float], float], low: float, high: float) -> flo
 
 
 def require_tension(prestretch: float, slack_voltage: float, voltages: Mapping[str, float],
-                    ) -> None:
+                    margin: float = 0.0) -> None:
     """Raise `BadInput` unless a membrane that is slack from ``slack_voltage`` on (V) is taut.
 
-    ``voltages`` (V) are those that it has to bear, by the names under which they are given.
+    ``voltages`` (V) are those that it has to bear, by the names under which they are given; at
+    all of them the share ``margin`` of V^2 at the loss of tension is to be left.
     """
     if slack_voltage == 0.0:
         raise BadInput(f'membrane.prestretch = {prestretch:g} leaves the flat membrane without '
                        'tension: raise it')
+    largest = slack_voltage * math.sqrt(1.0 - margin)
     for name, value in voltages.items():
         if value >= slack_voltage:
             shown, least = apart(value, slack_voltage, 4)
             raise BadInput(f'{name} {shown} V is out of range: the membrane loses its tension '
                            f'at {least} V')
+        if value > largest:
+            shown, most = apart(value, largest, 4)
+            raise BadInput(f'{name} {shown} V is out of range: at most {most} V with '
+                           f'actuation.slack_margin = {margin:g}')
 
 
 def breakdown_warning(electric_field: float, threshold: float) -> str | None:
