@@ -66,7 +66,8 @@ def factorise(markov: np.ndarray, rows: int | None = None, states: int = LEADING
 
     Block (i, j) is h[1 + i + j] in H0 and the sample after it in H1; ``rows`` is half of what the
     record holds by default. Up to `LARGEST` block rows and columns all singular values are
-    computed, of larger matrices the leading ``states``, which takes some 10 ms for 1000 samples.
+    computed, of larger matrices the leading ``states``: 5 ms for 1000 samples of three outputs,
+    17 ms for 4000.
     Outputs are divided by their root mean square first, so that metres and lift coefficients
     weigh alike in the truncation.
     Raises `BadInput` for a record that is too short, not finite or without response.

@@ -208,16 +208,36 @@ class Sheet:
         return f'{where}: no thickness balances the Maxwell stress; reduce the voltage'
 
     def loss_of_tension_v_squared(self, stretch: float) -> float:
-        """Return the V^2 at which the tension vanishes at the given total stretch.
+        """Return the least V^2 at which the tension vanishes at the given total stretch.
 
-        In the incompressible limit h^2 sigma/eps; zero where there is no tension to lose.
+        In the incompressible limit h^2 sigma/eps; zero where there is no tension to lose. Raises
+        `Diverged` where no V^2 takes it: the thickness pulls in before, or, next to the locking of
+        a compressible law, the squeezed sheet stiffens faster than the field relieves it.
         """
-        v_squared = 0.0
-        for _ in range(100):
-            response = self.respond([stretch], v_squared)
-            change = -float(response.tension[0] / response.voltage_slope[0])
-            v_squared = max(0.0, v_squared + change)
-            if abs(change) <= 1.0e-12 * v_squared or v_squared == 0.0:
-                return v_squared
-        raise Diverged(f'no loss of tension found at stretch {stretch:.6g}: V^2 = {v_squared:.6g} '
-                       f'still changes by {change:.3g}; the thickness pulls in before')
+        taut, beyond, v_squared = 0.0, math.inf, 0.0
+        tension, slope = self._tension_and_slope(stretch, v_squared)
+        if tension <= 0.0:
+            return 0.0
+        while True:
+            if tension > 0.0 and slope < 0.0:
+                taut = v_squared
+            else:
+                beyond = v_squared
+            if taut >= (1.0 - 1.0e-12) * beyond:
+                break
+            better = v_squared - tension / slope if slope < 0.0 else math.nan
+            if abs(better - v_squared) <= 1.0e-12 * better:
+                return better
+            # Newton, where that stays between what is known to be taut and what is not
+            v_squared = better if taut < better < beyond else 0.5 * (taut + beyond)
+            try:
+                tension, slope = self._tension_and_slope(stretch, v_squared)
+            except Diverged:
+                tension, slope = math.inf, math.inf
+        raise Diverged(f'no voltage takes the tension at stretch {stretch:.6g}: it falls up to '
+                       f'{math.sqrt(taut):.6g} V, beyond which the sheet stiffens, locks up or '
+                       'pulls in; reduce the prestretch')
+
+    def _tension_and_slope(self, stretch: float, v_squared: float) -> tuple[float, float]:
+        response = self.respond([stretch], v_squared)
+        return float(response.tension[0]), float(response.voltage_slope[0])

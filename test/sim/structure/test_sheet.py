@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dewing_sim.errors import BadInput, Diverged
@@ -136,6 +136,49 @@ def test_tension_changes_sign_at_its_loss(jm, ratio, lateral, stretch):
                         for share in (0.99, 1.0, 1.01))
     assert below > 0.0 > above
     assert abs(at) < 1.0e-9 * MU * H
+
+
+@settings(max_examples=60, deadline=None)
+@given(jm=st.floats(5.0, 100.0), ratio=st.floats(3.0, 1.0e4), lateral=st.floats(0.9, 1.5),
+       share=st.floats(0.1, 0.999))
+def test_loss_of_tension_up_to_locking_and_pull_in(jm, ratio, lateral, share):
+    """A sheet that is taut loses its tension at a positive V^2, or never: never at zero."""
+    sheet = Sheet(Elastomer(Gent(MU, jm), ratio * MU, EPS), H, lateral)
+    stretch = 1.0 + share * (np.sqrt(jm + 3.0) - 1.0)
+    try:
+        whole = sheet.respond([stretch], 0.0).tension[0]
+    except Diverged:
+        assume(False)
+    assume(whole > 0.0)
+    try:
+        limit = sheet.loss_of_tension_v_squared(stretch)
+    except Diverged as error:
+        assert 'no voltage takes the tension' in str(error)
+        limit = (float(re.search('falls up to (.*?) V', str(error))[1]))**2
+        assert all(tension_or_none(sheet, stretch, part * limit) > 0.0
+                   for part in np.linspace(0.0, 0.999, 12))
+        beyond = tension_or_none(sheet, stretch, 1.02 * limit)
+        at = tension_or_none(sheet, stretch, 0.9999 * limit)
+        assert beyond is None or beyond > at > 0.0
+        return
+    assert abs(sheet.respond([stretch], limit).tension[0]) < 1.0e-9 * whole
+    assert all(sheet.respond([stretch], part * limit).tension[0] > 0.0
+               for part in np.linspace(0.0, 0.999, 12))
+
+
+def tension_or_none(sheet, stretch, v_squared):
+    try:
+        return sheet.respond([stretch], v_squared).tension[0]
+    except Diverged:
+        return None
+
+
+def test_tension_next_to_locking_is_never_lost():
+    """It was said to be lost at 0 V: Newton from 0 V passed the least tension, of 182 N/m."""
+    sheet = Sheet(Elastomer(Gent(MU, 55.0), BULK, EPS), H)
+    assert sheet.loss_of_tension_v_squared(7.4) > 5.0e7
+    with pytest.raises(Diverged, match='no voltage takes the tension at stretch 7.5'):
+        sheet.loss_of_tension_v_squared(7.5)
 
 
 def test_unstretched_sheet_has_no_tension_to_lose():
