@@ -1,16 +1,22 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""Matrices and records to ROS messages: pure functions."""
+"""Matrices and records to ROS messages, and the topics that carry what was found."""
 
 from array import array
 
 import numpy as np
 from builtin_interfaces.msg import Duration
+from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from dewing_sim.lockstep import nanoseconds
+from dewing_sim.ros import qos
 from dewing_sysid.experiment import Record
+from dewing_sysid.identify import Identification
+from dewing_sysid.plan import EXPERIMENT
+
+MATRICES = {'a': ('state', 'state'), 'b': ('state', 'input'), 'c': ('output', 'state')}
 
 
 def matrix(values: np.ndarray, rows: str, columns: str) -> Float64MultiArray:
@@ -35,3 +41,20 @@ def response(record: Record) -> JointTrajectory:
         message.points.append(JointTrajectoryPoint(
             positions=array('d', row), time_from_start=Duration(sec=seconds, nanosec=rest)))
     return message
+
+
+class Announcement:
+    """Publishes ``model/a``, ``model/b``, ``model/c`` and ``pulse``, for late listeners too."""
+
+    def __init__(self, node: Node):
+        """Advertise the topics on ``node``."""
+        self._matrices = {name: node.create_publisher(Float64MultiArray, f'model/{name}',
+                                                      qos.LATCHED) for name in MATRICES}
+        self._pulse = node.create_publisher(JointTrajectory, 'pulse', qos.LATCHED)
+        self.publishers = [*self._matrices.values(), self._pulse]
+
+    def publish(self, found: Identification) -> None:
+        """Publish model and record."""
+        for name, labels in MATRICES.items():
+            self._matrices[name].publish(matrix(getattr(found.model, name), *labels))
+        self._pulse.publish(response(found.records[EXPERIMENT]))

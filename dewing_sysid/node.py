@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from time import monotonic
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64, Float64MultiArray, String
+from std_msgs.msg import Float64, String
 from std_srvs.srv import Trigger
-from trajectory_msgs.msg import JointTrajectory
 
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
@@ -20,6 +18,10 @@ from dewing_sim.files import check_free
 from dewing_sim.identity import Identity
 from dewing_sim.ros import given_parameters, harness, qos
 from dewing_sim.ros import messages as common
+from dewing_sim.ros.awake import Awake
+from dewing_sim.ros.rest import Rest
+from dewing_sim.ros.status import Status
+from dewing_sim.ros.watchdog import Watchdog
 from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
 from dewing_sysid.experiment import save_records
@@ -28,7 +30,6 @@ from dewing_sysid.settings import NODE_DEFAULTS, NodeSettings, Settings
 
 WATCH_PERIOD = 0.1          # s, wall
 FAREWELL = 1.0              # s, longest wait for the last reset
-MATRICES = {'a': ('state', 'state'), 'b': ('state', 'input'), 'c': ('output', 'state')}
 
 
 def settings_of(node: Node) -> tuple[Settings, NodeSettings]:
@@ -54,30 +55,30 @@ class SysidNode(Node):
         for path in filter(None, (self.node_settings.output, self.node_settings.records)):
             check_free(path, way_out='name another file')
         self.exit_status: int | None = None
-        self.reason = 'idle'
         self.found: Identification | None = None
-        self._level, self._identity, self._campaign = common.OK, None, None
-        self._resetting, self._latest, self._heard, self._shown = None, None, 0.0, -1.0
+        self._identity, self._campaign = None, None
+        self._latest, self._heard, self._shown = None, 0.0, -1.0
         self._wanted = self.node_settings.begin == 'at_start'
+        self._awake = Awake()
+        self.status = Status(self, 'idle', self._values)
+        self._watchdog = Watchdog(lambda sentence: self.status.set(common.WARN, sentence))
         self._connect()
+
+    reason = property(lambda self: self.status.sentence, doc='The sentence of the diagnostics.')
 
     def _connect(self):
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', qos.EVENTS)
         self._progress = self.create_publisher(Float64, '~/progress', qos.EVENTS)
-        self._model = {name: self.create_publisher(Float64MultiArray, f'model/{name}',
-                                                   qos.LATCHED) for name in MATRICES}
-        self._pulse = self.create_publisher(JointTrajectory, 'pulse', qos.LATCHED)
-        self._reset = self.create_client(Trigger, 'simulator/reset')
+        self._announcement = messages.Announcement(self)
+        self._rest = Rest(self, self._on_rest)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
-        self.create_subscription(JointState, 'measurement', self._on_measurement, qos.LATEST)
+        self._measurement = self.create_subscription(
+            JointState, 'measurement', self._on_measurement, qos.LATEST)
         self.create_service(Trigger, '~/start', self._on_start)
         self.create_service(Trigger, '~/stop', self._on_stop)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(WATCH_PERIOD, self._watch, clock=steady)
-        self.create_timer(1.0, self._report, clock=steady)
-
-    # --- begin and end of the runs -------------------------------------------------------------
+        self.create_timer(1.0, self.status.report, clock=steady)
 
     def _on_case(self, message: String):
         try:
@@ -90,17 +91,36 @@ class SysidNode(Node):
         if self._campaign is None and self._wanted:
             obstacle = self._obstacle()
             if obstacle:
-                self._set_status(common.OK, f'waiting: {obstacle}')
+                self.status.set(common.OK, f'waiting: {obstacle}')
             else:
                 self._begin()
-        elif self._campaign and monotonic() - self._heard > self.node_settings.patience:
-            self._finish(1, f'run {self._campaign.run!r}: nothing heard from the simulator for '
-                            f'{self.node_settings.patience:g} s')
+        elif self._campaign:
+            for message in qos.waiting(self._measurement):      # of which nobody told
+                self._on_measurement(message)
+            self._insist()
+
+    def _insist(self):
+        """Say that a run makes no progress, ask for its reset again, and in the end give up."""
+        campaign, patience = self._campaign, self.node_settings.patience
+        if campaign is None:
+            return
+        if self._awake() - self._heard > patience:
+            self._finish(1, f'run {campaign.run!r}: nothing heard from the simulator for '
+                            f'{patience:g} s')
+            return
+        awaited = 'the simulator to be reset' if self._rest.awaited else 'the next measurement'
+        stalled = self._watchdog.look((campaign.run, campaign.progress), (
+            f'run {campaign.run!r} at {campaign.progress:.0%}, waiting for {awaited}'))
+        if not stalled:
+            self.status.set(common.OK, f'run {campaign.run!r}')
+        elif self._rest.awaited:
+            self._watchdog.rest()
+            self._rest.ask()
 
     def _obstacle(self) -> str | None:
         if self._campaign:
             return 'experiments are already under way'
-        if self._identity is None or not self._reset.service_is_ready():
+        if self._identity is None or not self._rest.there:
             return 'the simulator is not there'
         if self.count_publishers('command') > 1:
             return 'another controller publishes commands: stop it first'
@@ -118,21 +138,17 @@ class SysidNode(Node):
 
     def _begin_run(self):
         """Ask for the rest state; measurements count from the moment it is granted."""
-        self._set_status(common.OK, f'run {self._campaign.run!r}')
-        self._heard, self._latest = monotonic(), None
-        self._resetting = self._reset.call_async(Trigger.Request())
-        self._resetting.add_done_callback(self._on_rest)
+        self.status.set(common.OK, f'run {self._campaign.run!r}')
+        self._heard, self._latest = self._awake(), None
+        self._rest.ask()
 
-    def _on_rest(self, _future):
-        self._resetting, latest = None, self._latest
-        if self._campaign and latest is not None:
-            self._answer(latest)
-
-    # --- the loop ------------------------------------------------------------------------------
+    def _on_rest(self):
+        if self._campaign and self._latest is not None:
+            self._answer(self._latest)
 
     def _on_measurement(self, message: JointState):
-        self._heard = monotonic()
-        if self._resetting is not None:
+        self._heard = self._awake()
+        if self._rest.awaited:
             self._latest = message
         elif self._campaign:
             self._answer(message)
@@ -164,7 +180,7 @@ class SysidNode(Node):
             self._begin_run()
             return
         self._restore()
-        self._set_status(common.OK, 'realising the model')
+        self.status.set(common.OK, 'realising the model')
         try:
             self._conclude(campaign)
         except (DewingError, OSError) as error:
@@ -176,25 +192,20 @@ class SysidNode(Node):
         if self.node_settings.records:
             save_records(self.node_settings.records, records, self._identity)
         self.found = identify(records, self.settings, self._identity)
+        self._announcement.publish(self.found)
         model = self.found.model
-        for name, labels in MATRICES.items():
-            self._model[name].publish(messages.matrix(getattr(model, name), *labels))
-        self._pulse.publish(messages.response(records[plan.EXPERIMENT]))
         if self.node_settings.output:
             model.save(self.node_settings.output)
         fits = ', '.join(f'{name} {fit:.1f} %' for name, fit in model.fit['window'].items())
         doubts = concerns(self.found, self.settings)
         sentence = '; '.join([f'order {model.order} model: fit of {fits}', *doubts])
-        self._set_status(common.WARN if doubts else common.OK, sentence)
+        self.status.set(common.WARN if doubts else common.OK, sentence)
         if self.node_settings.afterwards == 'exit':
             self._finish(0, sentence)
 
     def _restore(self):
-        """Bring the simulator back to its operating point."""
-        self._campaign, self._resetting, self._shown = None, None, -1.0
-        return self._reset.call_async(Trigger.Request())
-
-    # --- services, status, the end -------------------------------------------------------------
+        self._campaign, self._shown = None, -1.0
+        return self._rest.leave()
 
     def _on_start(self, _request, response):
         obstacle = self._obstacle()
@@ -209,37 +220,27 @@ class SysidNode(Node):
         if response.success:
             response.message = f'run {self._campaign.run!r} stopped, the simulator is reset'
             self._restore()
-            self._set_status(common.WARN, response.message)
+            self.status.set(common.WARN, response.message)
         return response
 
     def _finish(self, status: int, sentence: str):
         if self._campaign:
             self._restore()
-        self._set_status(common.ERROR if status else common.OK, sentence)
-        qos.deliver([self._diagnostics, *self._model.values(), self._pulse])
+        self.status.set(common.ERROR if status else common.OK, sentence)
+        qos.deliver(each for each in self.publishers if each is not self._command)
         self.exit_status = status
 
     def interrupt(self):
         """Restore the operating point if an experiment is under way."""
         if self._campaign:
-            self._set_status(common.WARN, f'interrupted in run {self._campaign.run!r}')
+            self.status.set(common.WARN, f'interrupted in run {self._campaign.run!r}')
             granted, deadline = self._restore(), monotonic() + FAREWELL
             while not granted.done() and monotonic() < deadline:
                 self.executor.spin_once(timeout_sec=0.1)
 
-    def _set_status(self, level: bytes, sentence: str):
-        changed = (level, sentence) != (self._level, self.reason)
-        self._level, self.reason = level, sentence
-        if changed:
-            self._report()
-            if level != common.OK:
-                self.get_logger().warning(sentence)
-
-    def _report(self):
+    def _values(self) -> dict[str, float]:
         progress = self._campaign.progress if self._campaign else float(self.found is not None)
-        self._diagnostics.publish(common.diagnostics(
-            self.get_fully_qualified_name(), self._level, self.reason, dict(progress=progress),
-            self.get_clock().now().to_msg()))
+        return dict(progress=progress)
 
 
 def main(args=None) -> int:

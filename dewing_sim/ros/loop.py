@@ -44,6 +44,16 @@ class Loop:
         """Whether a step waits for its command."""
         return self.running and self.locked and self.pending is None
 
+    @property
+    def paced(self) -> bool:
+        """Whether steps are made without waiting for commands."""
+        return self.running and not (self.locked or self.paused)
+
+    def wind_up(self):
+        """Let the timer of paced steps call again."""
+        self.deadlines.start(monotonic())
+        self._pace.reset()
+
     def start(self, now: float):
         """Publish the first measurement."""
         self.started, self.began = True, now
@@ -112,8 +122,7 @@ class Loop:
     def _resume(self):
         self._node.status.set(messages.OK, 'paused' if self.paused else 'running')
         if not (self.locked or self.paused):
-            self.deadlines.start(monotonic())
-            self._pace.reset()
+            self.wind_up()
 
     def pause(self, wanted: bool):
         """Hold simulated time, or go on."""

@@ -10,12 +10,13 @@ participant: from then on nobody waits for it.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from time import monotonic
 from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+from dewing_sim.ros.awake import Awake
 
 KEPT = 5000                 # messages, max_samples of Fast DDS
 TELL = 2.0                  # s of waiting after which one says so
@@ -72,10 +73,10 @@ def deliver(publishers: Iterable[Any], patience: float = PATIENCE,
 
     ``slow`` is told of the topic whose listeners first take longer than `TELL` s.
     """
-    began, told = monotonic(), False
+    awake, told = Awake(), False
     for publisher in list(publishers):
         while not publisher.wait_for_all_acked(Duration(seconds=0.2)):
-            waited = monotonic() - began        # in short waits, between which a signal is heard
+            waited = awake()        # in short waits, between which a signal is heard
             if waited > patience:
                 return
             if waited > TELL and not told:

@@ -6,7 +6,9 @@ from time import monotonic
 
 from rclpy.clock import Clock, ClockType
 
-from dewing_sim.ros import messages, qos
+from dewing_sim.ros import messages, qos, watchdog
+from dewing_sim.ros.awake import Awake
+from dewing_sim.ros.watchdog import Watchdog
 
 PERIOD = 0.05               # s, wall
 
@@ -17,8 +19,11 @@ class Watch:
     def __init__(self, node):
         """Look every `PERIOD` from now on."""
         self._node, self._loop, self._question = node, node.loop, node.question
-        self._created = monotonic()
-        self._held = 0.0        # when the measurement was asked whose silence was reported
+        self._awake = Awake()
+        self._asked = (0.0, 0.0)    # when the measurement in force was: by the clock, and awake
+        self._held = 0.0            # when that was asked whose silence was reported
+        self._watchdog = Watchdog(lambda sentence: node.status.set(messages.WARN, sentence),
+                                  watchdog.PATIENCE + self._loop.deadlines.period)
         node.create_timer(PERIOD, self.look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     @property
@@ -35,31 +40,46 @@ class Watch:
         """Start when everybody is there; ask again and give up when no answer comes."""
         if self._node.exit_status is not None:
             return
-        now = monotonic()
+        now = self._awake()
+        if self._asked[0] != self._question.asked:
+            self._asked = self._question.asked, now
         if not self._loop.started:
             self._start_when_ready(now)
         elif self._loop.awaits_command:
             for message in qos.waiting(self._node.command):
                 self._loop.on_command(message)
+            self._question.repeat(monotonic())
             self._insist(now)
+        if self._loop.paced:
+            self._keep_pace(now)
+        else:
+            self._watchdog.rest()
 
     def _start_when_ready(self, now: float):
         run = self._node.run
         ready = self._question.listeners >= run.subscribers
         if ready and (self.controllers or not self._loop.locked):
-            self._loop.start(now)
-        elif now - self._created > run.discovery_timeout:
+            self._loop.start(monotonic())
+        elif now > run.discovery_timeout:
             self._node.finish(1, f'waited for {run.discovery_timeout:g} s: {self.absent}')
 
+    def _keep_pace(self, now: float):
+        """Give up a listener that blocks for too long; wind up a timer that does not call."""
+        if self._question.blocked:
+            self._insist(now)
+        elif self._watchdog.look(self._node.lockstep.steps,
+                                 f'mode {self._node.run.mode}, the next step is overdue'):
+            self._loop.wind_up()
+
     def _insist(self, now: float):
+        """Say what a step waits for, and in the end stop."""
         lockstep, run = self._node.lockstep, self._node.run
         asked, missing = self._question.asked, self._question.missing
-        waited = now - asked
+        waited = now - self._asked[1] if asked == self._asked[0] else 0.0
         if waited > run.command_timeout + run.hold_timeout:
             self._node.finish(1, f'{missing} for {waited:.1f} s of wall time at '
                                  f'{lockstep.outputs.time:.6f} s: stopped')
             return
-        self._question.repeat(now)
         if waited > run.command_timeout and self._held != asked:
             self._held = asked
             self._node.status.set(messages.WARN, (

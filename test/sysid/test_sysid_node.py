@@ -3,11 +3,13 @@
 """The identification node in lock-step with a simulator, against the offline identification."""
 
 import dataclasses
+import time
 
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
+from rclpy.task import Future
 from ros_processes import PATIENCE
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
@@ -20,9 +22,11 @@ from dewing_sim.build import build_reduced
 from dewing_sim.errors import BadInput
 from dewing_sim.linear.model import Model
 from dewing_sim.records import bag_summary
-from dewing_sim.ros import harness, qos
+from dewing_sim.ros import awake, harness, qos
+from dewing_sim.ros import messages as common
 from dewing_sim.ros.node import SimulatorNode
 from dewing_sim.ros.recorder import RecorderNode
+from dewing_sim.ros.watchdog import Watchdog
 from dewing_sysid import messages, sources
 from dewing_sysid.experiment import load_records
 from dewing_sysid.identify import identify, identify_plant
@@ -190,6 +194,38 @@ def test_a_silent_simulator_ends_with_a_sentence(session, model, tmp_path):
     session.executor.remove_node(simulator)
     session.spin_until(lambda: node.exit_status is not None, PATIENCE)
     assert node.exit_status == 1 and 'nothing heard from the simulator for 0.5 s' in node.reason
+
+
+def test_a_reset_whose_reply_is_lost_is_asked_for_again(session, model, tmp_path):
+    _, node = start(session, model, tmp_path)
+    said = []
+    node._watchdog = Watchdog(lambda sentence: (
+        said.append(sentence), node.status.set(common.WARN, sentence)), 0.3)
+    session.spin_until(lambda: node._rest.awaited, PATIENCE)
+    node._rest._asked = Future()                    # the reply to the first one comes to nobody
+    session.spin_until(lambda: node.found is not None, PATIENCE)
+    assert "run 'baseline' at 0%, waiting for the simulator to be reset" in said[0]
+    assert node.reason.startswith('order 6 model')
+
+
+def test_measurements_that_nobody_tells_of_are_answered(session, model, tmp_path):
+    """An executor of events hears of a message once; a notice that is lost holds nothing up."""
+    simulator, node = start(session, model, tmp_path)
+    session.spin_until(lambda: simulator.lockstep.steps > 20, PATIENCE)
+    node._subscriptions.remove(node._measurement)           # the executor looks there
+    session.executor.wake()
+    held = simulator.lockstep.steps
+    session.spin_until(lambda: simulator.lockstep.steps > held + 20, PATIENCE)
+    assert node.status.level == common.OK
+
+
+def test_experiments_outlast_a_suspended_machine(session, model, tmp_path, monkeypatch):
+    monkeypatch.setattr(awake, 'LONGEST', 0.1)
+    simulator, node = start(session, model, tmp_path, patience=0.5)
+    session.spin_until(lambda: simulator.lockstep.steps > 20, PATIENCE)
+    time.sleep(0.7)
+    session.spin_until(lambda: node.found is not None or node.exit_status, PATIENCE)
+    assert node.found is not None, node.reason
 
 
 def test_an_existing_model_is_not_written_over(session, model, tmp_path):
