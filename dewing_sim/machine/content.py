@@ -141,6 +141,8 @@ def classes(signature: Any) -> tuple[str, ...]:
 
 def _instance_classes(arguments: Any) -> Iterator[type]:
     for argument in arguments:
+        if isinstance(argument, types.StructRef):
+            yield from _instance_classes(argument.field_dict.values())
         if isinstance(argument, types.BaseTuple):
             if isinstance(argument, types.BaseNamedTuple):
                 yield argument.instance_class

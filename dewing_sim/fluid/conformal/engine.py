@@ -18,7 +18,7 @@ from dewing_sim.errors import BadInput, DewingError, Diverged
 from dewing_sim.fluid.base import INFLOWS, Demand, Fluid, Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.conformal import diagnostics, noslip, step
 from dewing_sim.fluid.conformal.geometry.frame import Frame
-from dewing_sim.fluid.conformal.geometry.mapping import Map
+from dewing_sim.fluid.conformal.geometry.mapping import Line, Map
 from dewing_sim.fluid.conformal.geometry.wall import Geometry, WallGeometry
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.noslip import EdgeTable
@@ -26,6 +26,7 @@ from dewing_sim.fluid.conformal.presets import NAME, PRESETS
 from dewing_sim.fluid.conformal.pressure import added_mass, force
 from dewing_sim.fluid.field import FlowField
 from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.machine.resident import hold
 
 PINNED = 1.0e-7         # chords: springs that hold an edge give way by q c over the bulk modulus
 VERIFIED = {            # up to the time step, which its grid limits
@@ -100,9 +101,9 @@ class Conformal(Fluid):
         self.dt = dt
         self.columns = grid.columns
         self.solver = step.Solver.of(grid, self.nu, dt)
+        self._resident = hold(self.solver)
         self.geometry = Geometry(self.solver.exterior, dt)
         self.edges = EdgeTable(grid, self.solver.poisson, self.nu, dt)
-        self._still = np.zeros(len(self.columns) - 1)
         self.impedance = self._flat_impedance()
         self._steady = Frame.of(Inflow.steady(alpha), grid)
 
@@ -159,7 +160,8 @@ class Conformal(Fluid):
         past = step.Past(state.w, state.w_before, state.q, state.q_before, state.psi,
                          state.psi_before, state.circulation)
         w, q, psi, pressure, circulation, slip = step.advance(
-            past, around, frame.stream(around.map), motion, edges, self.solver)
+            self._resident, edges, *past, *around.map, around.shape_rate, around.scale_rate,
+            *frame.stream(around.map), *motion)
         self._require_hold(slip, state)
         fields = Predicted(before=state, around=around, w=w, q=q, psi=psi, pressure=pressure,
                            circulation=circulation, incidence=frame.inflow.incidence, slip=slip)
@@ -170,8 +172,7 @@ class Conformal(Fluid):
         p, wall = prediction.fields, prediction.wall
         pressure, change = p.pressure, velocity - wall.velocity
         if change.any():
-            motion = p.around.wall_motion(change, self._still, self._still, self.dt)
-            pressure = pressure + added_mass(self.solver.wall_pressure, motion.acceleration)
+            pressure = pressure + self._added_mass(change, p.around.line)
         now = p.before
         return FlowState(
             w=p.w, q=p.q, psi=p.psi, w_before=now.w, q_before=now.q, psi_before=now.psi,
@@ -236,10 +237,14 @@ class Conformal(Fluid):
         """Return 3 / (2 dt) times the added mass of the flat plate between its columns."""
         flat = self.geometry.at_rest(self.geometry.mapping.flat())
         jumps = []
-        for column in np.eye(len(self._still)):
-            motion = flat.wall_motion(column, self._still, self._still, self.dt)
-            jumps.append(flat.jump(added_mass(self.solver.wall_pressure, motion.acceleration)))
+        for column in np.eye(len(self.columns) - 1):
+            jumps.append(flat.jump(self._added_mass(column, flat.line)))
         return -np.array(jumps).T
+
+    def _added_mass(self, change: np.ndarray, line: Line) -> np.ndarray:
+        """Return the change of pressure (n,) by one of the wall velocity (columns,)."""
+        return added_mass(self.solver.wall_pressure.added_mass, change, self.dt, line.angles,
+                          line.slope)
 
 
 def _require_pinned(wall: Wall, kind: type[DewingError] = BadInput) -> None:

@@ -29,6 +29,7 @@ from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.transport import extrapolation_share
 from dewing_sim.machine.kernels import stage
+from dewing_sim.machine.resident import Resident, hold
 
 BLOCK = 4                   # modes added at once; divides the number of nodes
 NEGLIGIBLE_SLIP = 1.0e-6
@@ -147,10 +148,10 @@ class EdgeTable:
     def __init__(self, grid: Grid, poisson: Poisson, nu: float, dt: float):
         """Prepare the table for one viscosity and dt (c/U)."""
         self._grid, self._poisson, self._nu, self._dt = grid, poisson, nu, dt
-        self._table: dict[tuple[int, int], Edges] = {}
+        self._table: dict[tuple[int, int], Resident] = {}
 
-    def near(self, m: Map) -> Edges:
-        """Return the entry nearest to the edges of ``m``."""
+    def near(self, m: Map) -> Resident:
+        """Return the `Edges` nearest to those of ``m``."""
         spacing = SPACING * self._grid.step
         _, trailing, leading = m.edges.tolist()
         place = (round(trailing / spacing), round((leading - np.pi) / spacing))
@@ -158,7 +159,7 @@ class EdgeTable:
             self._table[place] = self._make(place[0] * spacing, np.pi + place[1] * spacing)
         return self._table[place]
 
-    def _make(self, trailing: float, leading: float) -> Edges:
-        return Edges(Influence.of(self._grid, self._poisson, trailing, leading, self._nu,
-                                  self._dt),
-                     extrapolation_share(self._grid, trailing, leading, self._dt))
+    def _make(self, trailing: float, leading: float) -> Resident:
+        return hold(Edges(Influence.of(self._grid, self._poisson, trailing, leading, self._nu,
+                                       self._dt),
+                          extrapolation_share(self._grid, trailing, leading, self._dt)))

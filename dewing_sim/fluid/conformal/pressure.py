@@ -19,6 +19,7 @@ from scipy import fft
 
 from dewing_sim.fluid.conformal.fourier.modes import line_modes, line_values
 from dewing_sim.fluid.conformal.fourier.stockham import transform
+from dewing_sim.fluid.conformal.geometry.wall import motion_along
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.machine.kernels import kernel, stage, summing_kernel
 
@@ -48,12 +49,17 @@ class WallPressure(NamedTuple):
 
 
 @kernel
-def added_mass(p, acceleration):
-    """Return the change of P (n,) by a normal acceleration A (n,)."""
+def added_mass(matrix, change, dt, angles, slope):
+    """Return the change of P (n,) by a ``change`` of the wall's velocity (columns,).
+
+    ``matrix`` is `WallPressure.added_mass`; ``angles`` and ``slope`` are of the `mapping.Line`.
+    """
+    still = np.zeros(change.size)
+    _, _, acceleration, _ = motion_along(change, still, still, dt, angles, slope)
     out = np.zeros(acceleration.size)
     for k in range(out.size):
         for i in range(out.size):
-            out[i] += p.added_mass[k, i] * acceleration[k]
+            out[i] += matrix[k, i] * acceleration[k]
     return out
 
 

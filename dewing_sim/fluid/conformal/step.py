@@ -14,6 +14,8 @@ from dewing_sim.fluid.conformal import adi, noslip, poisson, pressure, transport
 from dewing_sim.fluid.conformal.fourier import modes
 from dewing_sim.fluid.conformal.fourier.stockham import Buffers
 from dewing_sim.fluid.conformal.geometry.exterior import Exterior, measure
+from dewing_sim.fluid.conformal.geometry.frame import Stream
+from dewing_sim.fluid.conformal.geometry.wall import WallMotion
 from dewing_sim.fluid.conformal.grid import Grid, Strip
 from dewing_sim.fluid.conformal.poisson import Poisson
 from dewing_sim.fluid.conformal.pressure import WallPressure
@@ -71,15 +73,20 @@ class Past(NamedTuple):
 
 
 @kernel
-def advance(past, around, stream, motion, edges, solver):
+def advance(solver, edges, w, w_before, q, q_before, psi, psi_before, circulation, shape, ends,
+            shape_rate, scale_rate, corner, node, turning, u, v, acceleration, speed):
     """Return vorticity, h^2 w, psi', wall pressure, circulation and slip after a step.
 
-    ``around`` is the `WallGeometry` at the end of the step and ``motion`` the `WallMotion`;
-    ``edges`` are the `noslip.Edges` there. The slip is the largest that was shed.
+    ``solver`` holds the `Solver`, ``edges`` the `noslip.Edges` at the end of the step. Then come
+    the fields of a `Past`, of the `mapping.Map` at the end of the step and its rates, of a
+    `frame.Stream` and of a `WallMotion`. The slip is the largest that was shed.
     """
-    f, plan, scale = solver.fields, solver.exterior.plan, around.map.edges[0]
-    measure(around.map.shape, scale, around.shape_rate, around.scale_rate, solver.exterior,
-            f.buffers, f.h2, f.grid_v, f.grid_u)
+    solver, edges = solver.value, edges.value
+    past = Past(w, w_before, q, q_before, psi, psi_before, circulation)
+    stream, motion = Stream(corner, node, turning), WallMotion(u, v, acceleration, speed)
+    f, plan, scale = solver.fields, solver.exterior.plan, ends[0]
+    measure(shape, scale, shape_rate, scale_rate, solver.exterior, f.buffers, f.h2, f.grid_v,
+            f.grid_u)
     w, outflow = _transport(past, stream, edges.share, scale, solver)
     circulation = past.circulation + solver.dt * outflow
     required = modes.line_modes(-motion.u - 2.0 * scale * stream.node, f.buffers, plan)

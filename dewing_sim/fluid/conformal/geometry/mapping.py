@@ -18,6 +18,7 @@ from dewing_sim.fluid.conformal.fourier.modes import line_modes
 from dewing_sim.fluid.conformal.fourier.stockham import Buffers
 from dewing_sim.fluid.conformal.geometry.exterior import Exterior, wall_series
 from dewing_sim.machine.kernels import kernel, stage
+from dewing_sim.machine.resident import hold
 
 TOLERANCE = 1.0e-8          # chords, of the last change; the next would be a hundredth of it
 PASSES = 300
@@ -48,7 +49,7 @@ class Mapping:
     def __init__(self, exterior: Exterior):
         """Prepare for the grid of ``exterior``."""
         self._exterior = exterior
-        self._buffers = Buffers.of(len(exterior.xi))
+        self._tables = hold((exterior, Buffers.of(len(exterior.xi))))
 
     def flat(self) -> Map:
         """Return the map of a flat plate."""
@@ -75,7 +76,7 @@ class Mapping:
         It is the map of ``height``; where this is that of ``now``, the map stays as it is.
         """
         change, shape, edges, shape_rate, scale_rate, *line = _move(
-            height, height_now, *now, *before, dt, self._exterior, self._buffers)
+            height, height_now, *now, *before, dt, self._tables)
         if not change <= TOLERANCE:
             raise NotConverged(f'conformal map: the shape still changes by {change:.3g} chords '
                                f'after {PASSES} passes; the membrane is too strongly cambered '
@@ -93,8 +94,9 @@ class Line(NamedTuple):
 
 
 @kernel
-def _move(height, height_now, shape, edges, shape_before, edges_before, dt, exterior, b):
+def _move(height, height_now, shape, edges, shape_before, edges_before, dt, tables):
     """Return the last change of the map, its shape, edges and rates, and the membrane."""
+    exterior, b = tables.value
     moves = False
     for i in range(height.size):
         moves = moves or height[i] != height_now[i]

@@ -35,7 +35,7 @@ class WallGeometry(NamedTuple):
 
         ``now`` and ``before`` are those of the last two steps, for a BDF2 acceleration.
         """
-        return WallMotion(*_wall_motion(velocity, now, before, dt, self.line.angles,
+        return WallMotion(*motion_along(velocity, now, before, dt, self.line.angles,
                                         self.line.slope))
 
     def jump(self, pressure: np.ndarray) -> np.ndarray:
@@ -68,8 +68,11 @@ def _weights(s):
 
 
 @kernel
-def _wall_motion(velocity, now, before, dt, angles, slope):
-    """Interpolate cubically; columns lie at theta = pi - (c + 1/2) d theta, even in theta."""
+def motion_along(velocity, now, before, dt, angles, slope):
+    """Return the fields of a `WallMotion`, see `WallGeometry.wall_motion`.
+
+    They are interpolated cubically; columns lie at theta = pi - (c + 1/2) d theta, even in theta.
+    """
     columns, n = velocity.size, angles.size
     u, v, normal, speed = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     for i in range(n):

@@ -46,7 +46,7 @@ def test_no_response_of_the_wall_vorticity_resonates(dt):
     flat = fluid.geometry.mapping.flat()
     for camber in np.linspace(0.0, 0.2, 21):
         m = fluid.geometry.mapping.follow(parabola(fluid.columns, camber, 0.0).height, flat)
-        influence = fluid.edges.near(m).influence
+        influence = fluid.edges.near(m).value.influence
         assert influence.decay.max() <= 1.0
         assert np.linalg.cond(influence.inverse) < 1.0e3
 
