@@ -39,7 +39,7 @@ class MembraneIteration:
         """Take the tension curve if the membrane is elastic."""
         self.structure, self.motion, self.v_squared = structure, motion, v_squared
         self.operator, self._lowest_tension = operator, -math.inf
-        self._curve = _curve(structure, v_squared) if structure.viscosity is None else None
+        self._curve = curve_of(structure, v_squared) if structure.viscosity is None else None
 
     def takes(self, load: Load) -> bool:
         """Return whether the axes are at rest."""
@@ -49,7 +49,7 @@ class MembraneIteration:
                  ) -> tuple[np.ndarray, float]:
         """Return the position after one correction by ``inverse``, and its largest entry."""
         motion = self.motion
-        return _corrected(
+        return corrected(
             position, self._tension(position), motion.history, self.structure.mass,
             (self.operator.dt, self.operator.damping), load.flow, inverse.parts)
 
@@ -71,13 +71,13 @@ class MembraneIteration:
 
 
 @lru_cache(maxsize=2)
-def _curve(membrane: Membrane, v_squared: float) -> TensionCurve | None:
+def curve_of(membrane: Membrane, v_squared: float) -> TensionCurve | None:
     """Return the curve of one V^2, which is often held over many steps."""
     return TensionCurve.of(membrane.sheet, membrane.prestretch, v_squared)
 
 
 @kernel
-def _corrected(position, tension, history, mass, scheme, load, inverse):
+def corrected(position, tension, history, mass, scheme, load, inverse):
     """Return the next position and the largest correction.
 
     ``history`` is `Motion.history`, ``scheme`` dt and damping, ``load`` a `ColumnLoad` and

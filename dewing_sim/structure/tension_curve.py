@@ -50,11 +50,12 @@ class TensionCurve:
 
         They do not if a stretch is beyond the curve.
         """
-        return _along(position, stretch_per_length, self.middle, self.half, self.differences)
+        return along(position, stretch_per_length, self.middle, self.half, self.differences)
 
 
 @kernel
-def _along(position, stretch_per_length, middle, half, differences):
+def along(position, stretch_per_length, middle, half, differences):
+    """Return what `TensionCurve.along` does."""
     n, last = stretch_per_length.size, differences.size - 1
     place, tension = np.empty(n), np.empty(n)
     for k in range(n):

@@ -10,7 +10,7 @@ from dewing_sim.machine.kernels import checked_kernel
 
 
 @checked_kernel
-def _combined(x, y, z, a, b, c, scale):
+def combined(x, y, z, a, b, c, scale):
     """Return (a x + b y + c z) scale for arrays (nodes, 2)."""
     result = np.empty(x.shape)
     for i in range(x.shape[0]):
@@ -45,7 +45,7 @@ class Motion:
 
     def predict(self, dt: float) -> np.ndarray:
         """Return the position one step ahead, extrapolated with an error of order dt^3."""
-        return _combined(self.position, self.velocity, self.velocity_before,
+        return combined(self.position, self.velocity, self.velocity_before,
                          1.0, 1.5 * dt, -0.5 * dt, 1.0)
 
     def rate(self, position: np.ndarray, dt: float) -> np.ndarray:
@@ -53,7 +53,7 @@ class Motion:
 
         (3 x - 4 x_n + x_n-1) / (2 dt).
         """
-        return _combined(position, self.position, self.position_before,
+        return combined(position, self.position, self.position_before,
                          3.0, -4.0, 1.0, 0.5 / dt)
 
     def acceleration(self, velocity: np.ndarray, dt: float, damping: float = 0.0) -> np.ndarray:
@@ -61,5 +61,5 @@ class Motion:
 
         a = (3 w - 4 w_n + w_n-1) / (2 dt).
         """
-        return _combined(velocity, self.velocity, self.velocity_before,
+        return combined(velocity, self.velocity, self.velocity_before,
                          3.0 + 2.0 * dt * damping, -4.0, 1.0, 0.5 / dt)
