@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arguments of compiled functions that stay where they are: one reference for a tree of arrays.
 
-At each call from Python numba looks at the type of every array in a tuple and takes the array over,
-which for a solver of a hundred takes as long as some of its kernels. What never changes is handed
-over once, by `hold`, and then passed as one reference.
+At each call from Python numba looks at the type of every array in a tuple and takes the array
+over, which for a solver of a hundred takes as long as some of its kernels. What never changes is
+handed over once, by `hold`, and then passed as one reference.
 """
 
 from typing import Any
