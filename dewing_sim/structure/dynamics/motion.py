@@ -46,7 +46,7 @@ class Motion:
     def predict(self, dt: float) -> np.ndarray:
         """Return the position one step ahead, extrapolated with an error of order dt^3."""
         return combined(self.position, self.velocity, self.velocity_before,
-                         1.0, 1.5 * dt, -0.5 * dt, 1.0)
+                        1.0, 1.5 * dt, -0.5 * dt, 1.0)
 
     def rate(self, position: np.ndarray, dt: float) -> np.ndarray:
         """Return the BDF2 velocity if ``position`` is reached one step ahead.
@@ -54,7 +54,7 @@ class Motion:
         (3 x - 4 x_n + x_n-1) / (2 dt).
         """
         return combined(position, self.position, self.position_before,
-                         3.0, -4.0, 1.0, 0.5 / dt)
+                        3.0, -4.0, 1.0, 0.5 / dt)
 
     def acceleration(self, velocity: np.ndarray, dt: float, damping: float = 0.0) -> np.ndarray:
         """Return a + ``damping`` w if ``velocity`` w is reached one step ahead.
@@ -62,4 +62,4 @@ class Motion:
         a = (3 w - 4 w_n + w_n-1) / (2 dt).
         """
         return combined(velocity, self.velocity, self.velocity_before,
-                         3.0 + 2.0 * dt * damping, -4.0, 1.0, 0.5 / dt)
+                        3.0 + 2.0 * dt * damping, -4.0, 1.0, 0.5 / dt)
