@@ -9,8 +9,7 @@ mass, so the membrane is solved together with it.
 """
 
 import math
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,11 +18,12 @@ from dewing_sim.fluid.base import INFLOWS, Demand, Fluid, Loads, Monitor, Predic
 from dewing_sim.fluid.conformal import diagnostics, noslip, step
 from dewing_sim.fluid.conformal.geometry.frame import Frame
 from dewing_sim.fluid.conformal.geometry.mapping import Line, Map
-from dewing_sim.fluid.conformal.geometry.wall import Geometry, WallGeometry
+from dewing_sim.fluid.conformal.geometry.wall import Geometry
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.noslip import EdgeTable
 from dewing_sim.fluid.conformal.presets import NAME, PRESETS
 from dewing_sim.fluid.conformal.pressure import added_mass, force
+from dewing_sim.fluid.conformal.state import FlowState, Predicted
 from dewing_sim.fluid.field import FlowField
 from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.machine.resident import hold
@@ -34,53 +34,6 @@ VERIFIED = {            # up to the time step, which its grid limits
     'Reynolds number': (100.0, 10000.0),
     'angle of attack in deg': (0.0, 12.0),
 }
-
-
-@dataclass(frozen=True)
-class FlowState:
-    """Everything the next step depends on; arrays over the strip are (n, rows)."""
-
-    w: np.ndarray                   # vorticity in U / c
-    q: np.ndarray                   # h^2 w
-    psi: np.ndarray                 # psi' at the cell corners
-    w_before: np.ndarray            # one step earlier
-    q_before: np.ndarray
-    psi_before: np.ndarray
-    shape: np.ndarray               # the map, see `mapping.Map`
-    edges: np.ndarray
-    shape_before: np.ndarray
-    edges_before: np.ndarray
-    pressure: np.ndarray            # (n,) on the membrane, in rho U^2
-    height: np.ndarray              # wall heights at the column faces
-    velocity: np.ndarray            # wall velocities of the columns
-    velocity_before: np.ndarray
-    circulation: float              # of the wing and the wake within the grid, in U c
-    incidence: float                # of the chord to the undisturbed stream, rad
-    slip: float                     # largest that the last step shed, in U
-
-    @property
-    def map(self) -> Map:
-        """The present map."""
-        return Map(self.shape, self.edges)
-
-    @property
-    def map_before(self) -> Map:
-        """The map one step earlier."""
-        return Map(self.shape_before, self.edges_before)
-
-
-class Predicted(NamedTuple):
-    """What `correct` needs of a step."""
-
-    before: FlowState
-    around: WallGeometry
-    w: np.ndarray
-    q: np.ndarray
-    psi: np.ndarray
-    pressure: np.ndarray
-    circulation: float
-    incidence: float
-    slip: float
 
 
 class Conformal(Fluid):
