@@ -17,7 +17,7 @@ from dewing_sim.errors import BadInput, DewingError, Diverged
 from dewing_sim.fluid.base import INFLOWS, Demand, Fluid, Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.conformal import diagnostics, noslip, step
 from dewing_sim.fluid.conformal.geometry.frame import Frame
-from dewing_sim.fluid.conformal.geometry.mapping import Line, Map
+from dewing_sim.fluid.conformal.geometry.mapping import Line
 from dewing_sim.fluid.conformal.geometry.wall import Geometry
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.noslip import EdgeTable
