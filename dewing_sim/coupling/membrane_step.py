@@ -65,12 +65,12 @@ class MembraneStep:
 
     def __init__(self, general: tuple, tables: Resident, curve: TensionCurve):
         """Take the arguments of the general step, for it may have to go on."""
-        self._arguments, self._tables, self._curve = general, tables, curve
-        *_, self._motion, inputs = general
+        *_, motion, inputs = general
+        self._arguments, self._motion, self._usual = general, motion, curve.differences[0]
         self._uniform = 0.5 * inputs.wall_pressure      # q is half the unit of pressure
+        self._held = tables, *motion.history, curve.middle, curve.half, curve.differences
         self._reached, self._lowest, self._velocity = None, -math.inf, None
         self._general: StructureStep | None = None
-        motion = self._motion
         self.coasting = transfer.coasting_velocity(
             general[0].columns, motion.position, motion.velocity, motion.position_before,
             motion.velocity_before)
@@ -94,7 +94,7 @@ class MembraneStep:
         """Return the motion that ends at the last wall."""
         if self._general is not None:
             return self._general.end()
-        if not self._lowest > TAUT * self._curve.differences[0]:
+        if not self._lowest > TAUT * self._usual:
             self._arguments[1].require_taut(self._reached, self._arguments[4].v_squared)
         motion = self._motion
         return Motion(self._reached, self._velocity, motion.position, motion.velocity,
@@ -103,10 +103,8 @@ class MembraneStep:
     def _wall(self, jump: np.ndarray, velocity: np.ndarray, accuracy: float, start: np.ndarray,
               ) -> Wall | None:
         """Return the wall under a load, None where the compiled step ends."""
-        curve = self._curve
         is_found, position, lowest, rate, height, speed = _reach(
-            self._tables, *self._motion.history, curve.middle, curve.half, curve.differences,
-            jump, velocity, self._uniform, accuracy, start)
+            *self._held, jump, velocity, self._uniform, accuracy, start)
         if not is_found:
             return None
         self._reached, self._lowest, self._velocity = position, lowest, rate
