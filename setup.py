@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Install dewing with pip or colcon: one layout serves both.
 
-colcon puts the console scripts into ``lib/dewing`` (setup.cfg); pip puts them into ``bin``, where
-``ros2 run`` does not look, so the wrappers in ``scripts`` are installed to ``lib/dewing`` as data.
+Console scripts go into ``bin``, where a shell finds ``dewing_simulator``. ``ros2 run dewing
+simulator`` looks into ``lib/dewing``: the wrappers in ``scripts`` are installed there as data. The
+usual ``install_scripts`` of setup.cfg would put both there under colcon, each executable twice.
 """
 
 from pathlib import Path

@@ -93,6 +93,11 @@ def test_an_executable_is_a_wrapper_of_the_console_script_of_its_name(setup, nam
     assert scripts[f'dewing_{name}'] == f'{module}:{function}'
 
 
+def test_colcon_lists_every_executable_once():
+    """Nothing but the wrappers may go where ``ros2 run`` looks."""
+    assert 'script' not in (PROJECT / 'setup.cfg').read_text()
+
+
 def test_every_console_script_leads_to_a_function(setup):
     for entry in setup['entry_points']['console_scripts']:
         module, function = entry.partition(' = ')[2].split(':')
