@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from dewing_sim.parameters import choice, count, real, text
+from dewing_sim.parameters import choice, count, flag, real, text
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,9 @@ class Run:
     step_count: int = count('steps that one call of the service step makes', 1, 1000000)
     scalar_rate: float = real('Hz', 'rate of clock, scalars and loads', 1.0e-3, 1.0e9)
     membrane_rate: float = real('Hz', 'rate of the membrane shape', 1.0e-3, 1.0e9)
+    publish_clock: bool = flag('whether simulated time is published on clock_topic', default=True)
+    clock_topic: str = text('topic of simulated time; relative names stand in the namespace of '
+                            'the node', default='/clock')
     marker_exaggeration: float = real(
         '-', 'factor on the deflection in membrane_marker', 1.0e-3, 1.0e6)
 

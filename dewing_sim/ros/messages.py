@@ -31,6 +31,7 @@ from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Case, Flow
 from dewing_sim.plant import Measurement, Outputs, measurement_type
 from dewing_sim.quantities import schema
+from dewing_sim.ros import names
 
 MEASURED = list(schema(Outputs).measured)      # by the wing
 COMMANDED = ['v_squared']
@@ -101,13 +102,13 @@ def clock(time: float) -> Clock:
     return Clock(clock=to_stamp(round(time * 1.0e9)))
 
 
-def membrane(outputs: Outputs) -> PointCloud2:
+def membrane(outputs: Outputs, frame: str = 'wing') -> PointCloud2:
     """Return the membrane nodes in m with the pressure jump in Pa and the tension in N/m."""
     points = np.zeros((outputs.x.size, len(MEMBRANE_FIELDS)), np.float32)
     points[:, 0], points[:, 1] = outputs.x, outputs.y
     points[:, 3], points[:, 4] = outputs.pressure_jump, outputs.tension
     message = PointCloud2(height=1, width=len(points), is_dense=True, is_bigendian=False)
-    message.header.frame_id = 'wing'
+    message.header.frame_id = frame
     message.header.stamp = to_stamp(round(outputs.time * 1.0e9))
     message.fields = [PointField(name=name, offset=4 * i, datatype=PointField.FLOAT32, count=1)
                       for i, name in enumerate(MEMBRANE_FIELDS)]
@@ -117,10 +118,10 @@ def membrane(outputs: Outputs) -> PointCloud2:
     return message
 
 
-def membrane_marker(outputs: Outputs, exaggeration: float) -> Marker:
-    """Return the membrane as a line in the wing frame, its deflection times ``exaggeration``."""
+def membrane_marker(outputs: Outputs, exaggeration: float, frame: str = 'wing') -> Marker:
+    """Return the membrane as a line in its frame, the deflection times ``exaggeration``."""
     marker = Marker(ns='membrane', type=Marker.LINE_STRIP, action=Marker.ADD)
-    marker.header.frame_id = 'wing'
+    marker.header.frame_id = frame
     marker.header.stamp = to_stamp(round(outputs.time * 1.0e9))
     marker.pose.orientation.w = 1.0
     marker.scale.x = 0.005 * float(np.ptp(outputs.x))       # width of the line in m
@@ -130,14 +131,14 @@ def membrane_marker(outputs: Outputs, exaggeration: float) -> Marker:
     return marker
 
 
-def loads(outputs: Outputs, flow: Flow, chord: float) -> WrenchStamped:
+def loads(outputs: Outputs, flow: Flow, chord: float, frame: str = 'wind') -> WrenchStamped:
     """Return drag and lift (N/m) and the moment about c/4 (N) per unit span in wind axes.
 
     The moment about z is positive nose down, as the right-hand rule has it.
     """
     scale = flow.dynamic_pressure * chord
     message = WrenchStamped()
-    message.header.frame_id = 'wind'
+    message.header.frame_id = frame
     message.header.stamp = to_stamp(round(outputs.time * 1.0e9))
     message.wrench.force.x = scale * outputs.cd
     message.wrench.force.y = scale * outputs.cl
@@ -147,8 +148,9 @@ def loads(outputs: Outputs, flow: Flow, chord: float) -> WrenchStamped:
 
 def diagnostics(name: str, level: bytes, sentence: str, values: Mapping[str, Any], stamp: Time,
                 ) -> DiagnosticArray:
-    """Return the status of the component ``name`` with ``values`` as text."""
-    status = DiagnosticStatus(name=name, level=level, message=sentence, hardware_id='dewing')
+    """Return the status of the node with the full ``name``, with ``values`` as text."""
+    status = DiagnosticStatus(name=name, level=level, message=sentence,
+                              hardware_id=names.hardware(name.rpartition('/')[0]))
     status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
     message = DiagnosticArray(status=[status])
     message.header.stamp = stamp

@@ -52,10 +52,11 @@ class SimulatorNode(Node):
         return self.status.sentence
 
     def _connect(self):
-        self.question = Question(self, self.run.resend_period)
         self._identity = self.create_publisher(String, 'case', qos.LATCHED)
         self.telemetry = Telemetry(
             self, self.case, self.run, self.plant.dt, self.lockstep.outputs)
+        # The last publisher: who listens to it, and so is waited for, knows of all others.
+        self.question = Question(self, self.run.resend_period)
         self.loop = Loop(self)
         self.command = self.create_subscription(
             JointState, 'command', self.loop.on_command, qos.LATEST)

@@ -50,11 +50,6 @@ class Question:
             self._sent, self.resent = now, self.resent + 1
             self.offer()
 
-    def waiting(self, controllers: int, wanted: int) -> str:
-        """Say who is there and who is waited for before the first step."""
-        return (f'{controllers} controllers and {self.listeners} listeners; at least 1 and '
-                f'{wanted} are needed')
-
     def gone(self, wanted: int) -> str:
         """Say that fewer listeners are left than were ``wanted``, or nothing."""
         if self.listeners >= wanted:

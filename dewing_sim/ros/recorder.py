@@ -57,8 +57,13 @@ class RecorderNode(Node):
         self.create_timer(FLUSH_PERIOD, self._flush, clock=steady)
 
     def _discover(self):
+        """Subscribe to what is new, to measurement last: the simulator waits for its listeners.
+
+        When the run starts, it knows of every subscription made before that one.
+        """
         own = self.get_namespace().rstrip('/') + '/'
-        for topic, kinds in self.get_topic_names_and_types():
+        for topic, kinds in sorted(self.get_topic_names_and_types(),
+                                   key=lambda item: item[0] == f'{own}measurement'):
             if topic in self._topics or not (topic.startswith(own) or topic in COMMON):
                 continue
             publishers = self.get_publishers_info_by_topic(topic)

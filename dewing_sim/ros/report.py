@@ -16,26 +16,38 @@ class Report:
 
     def __init__(self, node):
         """Report from now on."""
-        self._node = node
+        self._node, self._speed_told = node, False
         node.create_timer(PERIOD, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def publish(self):
         """Publish level, sentence and numbers."""
         status, started = self._node.status, self._node.loop.started
+        if not self._speed_told and self._node.lockstep.steps:
+            self._tell_speed()
         if not started:
-            status.set(messages.OK, self._node.watch.absent)
+            absent = self._node.watch.absent
+            if absent:
+                status.set(messages.OK, f'waiting for {absent}')
         caution = self._caution(started)
         if status.level == messages.OK and caution:
             status.set(messages.WARN, caution)
         else:
             status.report()
 
+    def _tell_speed(self):
+        """Log the speed of the first second or so."""
+        self._speed_told, figures = True, values(self._node)
+        self._node.get_logger().info(
+            'simulated over wall time: {rtf:.3g}, {ms_per_step:.3g} ms a step and '
+            '{overhead_ms_per_step:.3g} ms beside it'.format(**figures))
+
     def _caution(self, started: bool) -> str:
         node = self._node
         controllers = node.watch.controllers
         if controllers > 1:
             return f'{controllers} controllers: the first answer to a measurement counts'
-        return (node.question.gone(node.run.subscribers * started)
+        return (node.telemetry.clock.caution
+                or node.question.gone(node.run.subscribers * started)
                 or node.built.caution(node.lockstep.state))
 
 

@@ -7,6 +7,8 @@ from typing import Any
 
 from dewing_sim.ros import messages, qos
 
+REMEMBERED = 1000           # warnings
+
 
 class Status:
     """Level and sentence in force; published when they change and whenever `report` is called.
@@ -20,15 +22,27 @@ class Status:
         self._publisher = node.create_publisher(messages.DiagnosticArray, '/diagnostics',
                                                 qos.EVENTS)
         self.level, self.sentence = messages.OK, sentence
+        self._fine, self._doubts = '', set()        # logged: the last sentence, all warnings
 
     def set(self, level: bytes, sentence: str) -> None:
-        """Publish level and sentence if either is new; warnings and errors are logged too."""
+        """Publish level and sentence if either is new, and log what was not logged before."""
         if (level, sentence) == (self.level, self.sentence):
             return
         self.level, self.sentence = level, sentence
         self.report()
+        self._log(level, sentence)
+
+    def _log(self, level: bytes, sentence: str) -> None:
+        """Log each warning once, and what is well whenever it is not what it was."""
         if level != messages.OK:
-            self._node.get_logger().warning(sentence)
+            if sentence not in self._doubts:
+                self._node.get_logger().warning(sentence)
+            self._doubts.add(sentence)
+            if len(self._doubts) > REMEMBERED:
+                self._doubts.clear()
+        elif sentence != self._fine:
+            self._fine = sentence
+            self._node.get_logger().info(sentence)
 
     def deliver(self, publishers: Iterable[Any], patience: float) -> None:
         """Wait for slow listeners as `qos.deliver` does, and say for which."""

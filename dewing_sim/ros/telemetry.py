@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import schema
-from dewing_sim.ros import messages, qos
+from dewing_sim.ros import messages, names, qos
+from dewing_sim.ros.clock import SimulatedClock
 from dewing_sim.settings import Run
 
 
@@ -21,7 +22,7 @@ class Channel(NamedTuple):
 
 
 class Telemetry:
-    """The topics beside ``measurement``."""
+    """The topics beside ``measurement``, of which `clock` lives on while the run stands still."""
 
     def __init__(self, node, case: Case, run: Run, dt: float, outputs: Outputs):
         """Advertise the topics of a plant that has what ``outputs`` has on ``node``.
@@ -29,34 +30,51 @@ class Telemetry:
         Rates become whole numbers of steps of ``dt``.
         """
         self._dt = dt
+        self.clock = SimulatedClock(node, run, _period(run.scalar_rate, dt), outputs.time)
+        wing, wind = (names.frame(node.get_namespace(), name) for name in ('wing', 'wind'))
 
         def channel(topic: str, kind: type, rate: float, make: Callable) -> Channel:
-            period = max(1, round(1.0 / (rate * dt)))
+            period = _period(rate, dt)
             return Channel(node.create_publisher(kind, topic, qos.every(period)), period, make)
 
-        self._channels = [channel('/clock', messages.Clock, run.scalar_rate,
-                                  lambda outputs: messages.clock(outputs.time))]
-        self._channels += [channel(each.topic, messages.Float64, run.scalar_rate,
-                                   _scalar(each.name))
-                           for each in schema(type(outputs)).quantities
-                           if each.topic and getattr(outputs, each.name) is not None]
+        self._channels = [channel(each.topic, messages.Float64, run.scalar_rate,
+                                  _scalar(each.name))
+                          for each in schema(type(outputs)).quantities
+                          if each.topic and getattr(outputs, each.name) is not None]
         if _has(outputs, 'cl', 'cd', 'cm') and run.plant != 'reduced':
             self._channels.append(channel(
                 'loads', messages.WrenchStamped, run.scalar_rate,
-                lambda outputs: messages.loads(outputs, case.flow, case.membrane.chord)))
+                lambda outputs: messages.loads(outputs, case.flow, case.membrane.chord, wind)))
         if _has(outputs, 'x', 'y', 'pressure_jump', 'tension'):
             self._channels += [
-                channel('membrane', messages.PointCloud2, run.membrane_rate, messages.membrane),
+                channel('membrane', messages.PointCloud2, run.membrane_rate,
+                        lambda outputs: messages.membrane(outputs, wing)),
                 channel('membrane_marker', messages.Marker, run.membrane_rate,
                         lambda outputs: messages.membrane_marker(
-                            outputs, run.marker_exaggeration))]
+                            outputs, run.marker_exaggeration, wing))]
+
+    @property
+    def listeners(self) -> int:
+        """Number of subscriptions to all topics.
+
+        A listener of several subscribes to them one by one: while the number changes, the first
+        sample would miss some.
+        """
+        return self.clock.listeners + sum(channel.publisher.get_subscription_count()
+                                          for channel in self._channels)
 
     def publish(self, outputs: Outputs) -> None:
         """Publish what is due at the time of ``outputs``."""
         step = round(outputs.time / self._dt)
+        self.clock.publish(outputs.time, step)
         for publisher, period, make in self._channels:
             if step % period == 0 and publisher.get_subscription_count():
                 publisher.publish(make(outputs))
+
+
+def _period(rate: float, dt: float) -> int:
+    """Return how many steps of ``dt`` (s) there are from one message to the next."""
+    return max(1, round(1.0 / (rate * dt)))
 
 
 def _scalar(name: str) -> Callable[[Outputs], Any]:

@@ -22,6 +22,7 @@ class Watch:
         self._awake = Awake()
         self._asked = (0.0, 0.0)    # when the measurement in force was: by the clock, and awake
         self._held = 0.0            # when that was asked whose silence was reported
+        self._listeners = -1        # to the telemetry, when last looked at
         self._watchdog = Watchdog(lambda sentence: node.status.set(messages.WARN, sentence),
                                   watchdog.PATIENCE + self._loop.deadlines.period)
         node.create_timer(PERIOD, self.look, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -33,8 +34,15 @@ class Watch:
 
     @property
     def absent(self) -> str:
-        """Say who is there and who is waited for before the first step."""
-        return self._question.waiting(self.controllers, self._node.run.subscribers)
+        """Say who is waited for before the first step."""
+        wanted = self._node.run.subscribers
+        missing = wanted - self._question.listeners
+        return ' and '.join(['a controller'] * self._lacks_controller + [
+            f'{missing} of {wanted} listeners of measurement (run.subscribers)'] * (missing > 0))
+
+    @property
+    def _lacks_controller(self) -> bool:
+        return self._loop.locked and not self.controllers
 
     def look(self):
         """Start when everybody is there; ask again and give up when no answer comes."""
@@ -57,11 +65,13 @@ class Watch:
 
     def _start_when_ready(self, now: float):
         run = self._node.run
-        ready = self._question.listeners >= run.subscribers
-        if ready and (self.controllers or not self._loop.locked):
+        absent, listeners = self.absent, self._node.telemetry.listeners
+        settled, self._listeners = listeners == self._listeners, listeners
+        if not absent and settled:
             self._loop.start(monotonic())
-        elif now > run.discovery_timeout:
-            self._node.finish(1, f'waited for {run.discovery_timeout:g} s: {self.absent}')
+        elif absent and now > run.discovery_timeout:
+            self._node.finish(1, f'waited {run.discovery_timeout:g} s (run.discovery_timeout) for '
+                                 f'{absent}')
 
     def _keep_pace(self, now: float):
         """Give up a listener that blocks for too long; wind up a timer that does not call."""

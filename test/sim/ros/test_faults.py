@@ -129,8 +129,8 @@ def test_a_late_controller_is_waited_for(both):
     ros, session = both
     path, doctor = ros.recorder(), session.add(Doctor)
     simulator = ros.simulator(duration=0.01, subscribers=2)
-    session.spin_until(lambda: any('0 controllers and' in said for said in doctor.sentences),
-                       PATIENCE)
+    session.spin_until(lambda: any('waiting for a controller' in said
+                                   for said in doctor.sentences), PATIENCE)
     ros.controller()
     assert simulator.wait(PATIENCE) == 0
     assert_as_offline(path, 100)

@@ -158,7 +158,8 @@ def test_an_unanswered_measurement_is_sent_again_unchanged(session, settings):
 def test_no_controller_ends_the_run_after_the_stated_wait(session, settings):
     simulator = session.add(SimulatorNode, settings | {'run.discovery_timeout': 0.2})
     session.spin_until(lambda: simulator.exit_status is not None, PATIENCE)
-    assert simulator.exit_status == 1 and '0 controllers and 0 listeners' in simulator.reason
+    assert simulator.exit_status == 1 and (
+        'for a controller and 1 of 1 listeners of measurement' in simulator.reason)
 
 
 def test_free_mode_needs_no_controller_and_takes_the_last_command(session, settings):
