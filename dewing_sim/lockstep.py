@@ -9,6 +9,7 @@ from typing import Any
 
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.inputs.outside import OutsideInputs
 from dewing_sim.plant import Outputs, Plant
 from dewing_sim.quantities import schema
 
@@ -25,6 +26,7 @@ class LockStep:
     plant: Plant
     state: Any
     v_squared_max: float
+    outside: OutsideInputs | None = None    # what else acts on the plant
     outputs: Outputs = field(init=False)
     v_squared: float = field(init=False)    # in force
     steps: int = 0                          # made in this run
@@ -41,6 +43,8 @@ class LockStep:
         """Continue from ``state`` with the V^2 that led to it."""
         self.state, self.outputs = state, self._observe(state)
         self.v_squared = self.outputs.v_squared
+        if self.outside is not None:
+            self.outside.restart()
 
     @property
     def stamp(self) -> int:
@@ -63,11 +67,16 @@ class LockStep:
     def advance(self, v_squared: float):
         """Make one step; on `RunFailed` the last good state stays in ``state``."""
         began = perf_counter()
-        state = self.plant.step(self.state, Inputs(v_squared))
+        state = self.plant.step(self.state, self._inputs(v_squared))
         self.outputs = self._observe(state)
         self.state, self.v_squared = state, v_squared
         self.steps += 1
         self.plant_seconds += perf_counter() - began
+
+    def _inputs(self, v_squared: float) -> Inputs:
+        if self.outside is None:
+            return Inputs(v_squared)
+        return self.outside.during(v_squared, self.stamp, self.outputs.time + self.plant.dt)
 
     def figures(self, wall: float) -> dict[str, float]:
         """Return counters and speeds of a run that has taken ``wall`` s."""

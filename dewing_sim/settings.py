@@ -40,6 +40,15 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Following:
+    """How gust and motion that come over topics are followed."""
+
+    smoothing: float = real(
+        's', 'lag within which gust and motion follow their messages, at least two time steps',
+        1.0e-6, 10.0)
+
+
+@dataclass(frozen=True)
 class SimulatorSettings:
     """Parameters of the simulator that do not belong to the case."""
 
@@ -50,3 +59,4 @@ class SimulatorSettings:
     run: Run
 
     ros_node = 'simulator'
+    inputs: Following

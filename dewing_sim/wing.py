@@ -17,6 +17,7 @@ from dewing_sim.coupling.iteration import Coupling
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.fluid import engines
 from dewing_sim.fluid.base import Monitor
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.fluid.plate import starting_circulation
 from dewing_sim.inputs.amplifier import Amplifier
 from dewing_sim.inputs.base import Inputs
@@ -92,6 +93,19 @@ class Wing:
                                  inputs._replace(v_squared=min(v_squared, bearable)))
         after = self.couple(state, acting, self._coupling)
         return replace(after, clipped=clipped) if clipped else after
+
+    @property
+    def open_to(self) -> frozenset[str]:
+        """What may disturb it from outside, see `inputs.outside`; the engine meets inflows."""
+        return self.fluid.inflows | {'pressure_disturbance'}
+
+    def meets(self, time: float, gust: np.ndarray, motion: np.ndarray) -> Inflow:
+        """Return its inflow at ``time`` (s) with a gust and a motion from outside added.
+
+        ``gust`` (2, 2) holds speeds along the stream and upwards in m/s and their rates,
+        ``motion`` (3, 2) heave in m and pitch in rad with their first two derivatives.
+        """
+        return self.sources.meets(time, gust, motion, self.scales)
 
     def couple(self, state: State, inputs: Inputs, coupling: Coupling) -> State:
         """Advance flow and membrane by one step; failures carry ``state`` and its time."""

@@ -15,8 +15,9 @@ from dewing_sim.plant import Outputs
 from dewing_sim.quantities import schema
 from dewing_sim.records import bag
 from dewing_sim.records.mcap_file import Losses
+from dewing_sim.records.runs import JOINTS, Splitter, choose
 from dewing_sim.records.runs import Run as Samples
-from dewing_sim.records.runs import Splitter, choose
+from dewing_sysid.disturbed import INPUTS, Disturbances, require_cancelled
 from dewing_sysid.experiment import STANDARD, Record, load_records
 from dewing_sysid.plan import BASELINE, EXPERIMENT, FRESH, HALF, SWEEP, case_of
 
@@ -44,10 +45,11 @@ def from_bag(path: str | Path, run: int | None = None) -> tuple[dict[str, Record
     the first other one the experiment, half its deviation the linearity check, one of two levels
     the fresh binary sequence, any other the sweep.  With ``run``, counted from 1, that one is the
     experiment, and of the others only the baseline is taken.  The outputs are those of `STANDARD`
-    that were measured, and any that are not dewing's own.  Raises `BadInput` if messages are
-    missing, if two runs could be the same one, or if there is no run ``run``.
+    that were measured, and any that are not dewing's own.  What else acted has to be the same in
+    the baseline.  Raises `BadInput` if it is not, if messages are missing, if two runs could be
+    the same one, or if there is no run ``run``.
     """
-    identity, measured, commanded = _contents(path)
+    identity, measured, commanded, disturbances = _contents(path)
     names = _names(measured[0])
     if len(measured) != len(commanded):
         raise BadInput(f'{path}: {len(measured)} runs of measurements do not fit '
@@ -56,25 +58,34 @@ def from_bag(path: str | Path, run: int | None = None) -> tuple[dict[str, Record
     pairs = [(_rows(path, seen, names), _rows(path, said, COMMANDED))
              for seen, said in zip(measured, commanded)]
     if run is None:
-        runs = _named(path, [_aligned(path, identity.dt, *pair) for pair in pairs], rest)
+        runs, numbers = _named(path, [_aligned(path, identity.dt, *pair) for pair in pairs], rest)
     else:
         choose(measured, run, path, MEASUREMENT)
-        runs = _single(path, pairs, run - 1, identity.dt, rest)
+        runs, numbers = _single(path, pairs, run - 1, identity.dt, rest)
     if EXPERIMENT not in runs:
         raise BadInput(f'{path}: V^2 never changes' + (f' in run {run}' if run else '')
                        + ', there is no experiment in it')
+    acting = disturbances.by_run(measured)
+    for number in numbers.values():
+        require_cancelled(path, disturbances, acting, number, numbers.get(BASELINE),
+                          measured[number - 1].stamps[-1])
     return {name: _record(v_squared, outputs, runs.get(BASELINE), identity.dt, rest, names)
             for name, (v_squared, outputs) in runs.items() if name != BASELINE}, identity
 
 
-def _contents(path: str | Path) -> tuple[Identity, list[Samples], list[Samples]]:
-    """Return the plant, the measured and the commanded runs of a bag."""
-    losses, identities = Losses(), []
+def _contents(path: str | Path,
+              ) -> tuple[Identity, list[Samples], list[Samples], Disturbances]:
+    """Return the plant, the measured and the commanded runs of a bag, and what disturbed them."""
+    losses, identities, disturbances = Losses(), [], Disturbances()
     splitters = {topic: Splitter(topic, losses) for topic in (MEASUREMENT, COMMAND)}
-    for topic, _, message in bag.read(path, CASE, *splitters, losses=losses):
-        if topic != CASE:
+    for topic, received, message in bag.read(path, CASE, INPUTS, *splitters, losses=losses):
+        if topic == INPUTS and message.__msgtype__ == JOINTS:
+            disturbances.acted(received, message)
+        elif topic in splitters:
             splitters[topic].add(message)
-        elif (identity := _identity(path, message)) not in identities:
+            if topic == MEASUREMENT:
+                disturbances.measured(received, message)
+        elif topic == CASE and (identity := _identity(path, message)) not in identities:
             identities.append(identity)
     for sentence in losses.sentences():
         warnings.warn(f'{path}: {sentence}', RuntimeWarning, stacklevel=4)
@@ -85,7 +96,7 @@ def _contents(path: str | Path) -> tuple[Identity, list[Samples], list[Samples]]
     measured, commanded = (splitter.runs for splitter in splitters.values())
     if not measured:
         raise BadInput(f'{path}: no messages on {MEASUREMENT}')
-    return identities[0], measured, commanded
+    return identities[0], measured, commanded, disturbances
 
 
 def _identity(path: str | Path, message: Any) -> Identity:
@@ -124,8 +135,9 @@ def _aligned(path: str | Path, dt: float, measured: dict, commanded: dict) -> Ru
     return np.array(levels), np.array([measured[stamp] for stamp in stamps]).T
 
 
-def _named(path: str | Path, runs: list[Run], rest: float) -> dict[str, Run]:
-    """Return the runs by what they are for."""
+def _named(path: str | Path, runs: list[Run], rest: float,
+           ) -> tuple[dict[str, Run], dict[str, int]]:
+    """Return the runs, and their numbers, by what they are for."""
     named: dict[str, Run] = {}
     numbers: dict[str, int] = {}
     for number, (v_squared, outputs) in enumerate(runs, start=1):
@@ -137,7 +149,7 @@ def _named(path: str | Path, runs: list[Run], rest: float) -> dict[str, Run]:
             raise BadInput(f'{path}: runs {numbers[name]} and {number} both look like the run '
                            f'{name}; identify from one, which is to be chosen')
         named[name], numbers[name] = (v_squared, outputs), number
-    return named
+    return named, numbers
 
 
 def _purpose(v_squared: np.ndarray, experiment: np.ndarray | None, rest: float) -> str:
@@ -153,14 +165,19 @@ def _purpose(v_squared: np.ndarray, experiment: np.ndarray | None, rest: float) 
 
 
 def _single(path: str | Path, pairs: list[tuple[dict, dict]], chosen: int, dt: float,
-            rest: float) -> dict[str, Run]:
-    """Return the chosen run as the experiment, and a baseline that is as long if there is one."""
+            rest: float) -> tuple[dict[str, Run], dict[str, int]]:
+    """Return the chosen run as the experiment, and a baseline that is as long if there is one.
+
+    The second are their numbers, counted from 1.
+    """
     run = _aligned(path, dt, *pairs[chosen])
     found = {EXPERIMENT: run} if _purpose(run[0], None, rest) == EXPERIMENT else {}
-    for measured, commanded in pairs:
+    numbers = dict.fromkeys(found, chosen + 1)
+    for number, (measured, commanded) in enumerate(pairs, start=1):
         if len(measured) >= len(run[0]) and {value - rest for value, in commanded.values()} == {0}:
-            return found | {BASELINE: _aligned(path, dt, measured, commanded)}
-    return found
+            return (found | {BASELINE: _aligned(path, dt, measured, commanded)},
+                    numbers | {BASELINE: number})
+    return found, numbers
 
 
 def _record(v_squared: np.ndarray, outputs: np.ndarray, baseline: Run | None, dt: float,

@@ -71,6 +71,8 @@ ELSEWHERE = {
 }
 # Blocks that need a system ROS; `make long` executes them where there is one.
 SYSTEM_ROS = ('source /opt/ros/jazzy/setup.bash', 'ros2 run dewing', 'ros2 launch dewing')
+# Blocks for nodes that run; test/project/test_ros2_commands.py executes them where `ros2` is.
+BESIDE_NODES = ('ros2 topic',)
 
 
 class Block(NamedTuple):
@@ -90,11 +92,13 @@ class Block(NamedTuple):
 
     @property
     def where(self) -> str:
-        """Who executes a block of shell: 'test', 'long', 'ros' or, if nobody, ''."""
+        """Who executes a block of shell: 'test', 'long', 'ros', 'nodes' or, if nobody, ''."""
         if self.lines[0] in LONG:
             return 'long'
         if self.lines[0].startswith(SYSTEM_ROS):
             return 'ros'
+        if all(line.startswith(BESIDE_NODES) for line in self.lines):
+            return 'nodes'
         known = all(words(line)[:1] == ['dewing'] and words(line)[1] in SHORT
                     for line in self.lines)
         return 'test' if known else ''

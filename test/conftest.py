@@ -23,7 +23,8 @@ os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join(
 
 # Where there is no ROS, everything offline is still tested.
 ROS_TESTS = ['cli/test_demo.py', 'control/test_law_node.py',
-             'control/test_laws_over_dds.py', 'project/test_ros_docs.py',
+             'control/test_laws_over_dds.py', 'project/test_ros2_commands.py',
+             'project/test_ros_docs.py',
              'sim/ros/*.py', 'sysid/test_sysid_node.py']
 collect_ignore_glob = [] if find_spec('rclpy') else ROS_TESTS
 

@@ -5,6 +5,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,16 @@ from dewing_sim.schema.numerals import apart
 
 STRONGEST = 1.0         # gust or motion over free-stream speed
 SHARP = 0.1             # of a time step, over which a user's function is differentiated
+
+
+class Outside(NamedTuple):
+    """A gust (2, 2), along the stream and upwards, and a motion (3, 2), heave and pitch.
+
+    Each holds the values, their rates and, of the motion, the accelerations; dimensionless.
+    """
+
+    gust: np.ndarray
+    motion: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -74,8 +85,8 @@ class InflowSchedule:
         return (self.gust_course.shape == self.motion_course.shape == 'none'
                 and self.more_gust is None and self.more_motion is None)
 
-    def at(self, time: float) -> Inflow:
-        """Return the inflow at ``time`` (c/U)."""
+    def at(self, time: float, outside: Outside | None = None) -> Inflow:
+        """Return the inflow at ``time`` (c/U), with what comes from ``outside`` added."""
         value, rate, _ = self.gust_course(time)
         course = self.motion_course(time)
         gust, gust_rate = self.gust * value, self.gust * rate
@@ -86,6 +97,10 @@ class InflowSchedule:
         if self.more_motion is not None:
             more = self.more_motion(time)
             heave, pitch = heave + more[:, 0], pitch + more[:, 1]
+        if outside is not None:
+            gust = gust + complex(*outside.gust[0])
+            gust_rate = gust_rate + complex(*outside.gust[1])
+            heave, pitch = heave + outside.motion[:, 0], pitch + outside.motion[:, 1]
         incidence = self.alpha + pitch[0]
         axes = complex(math.cos(incidence), math.sin(incidence))
         return Inflow(stream=axes * (1.0 + gust - 1j * heave[1]),

@@ -5,9 +5,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
+from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.disturbance import wall_pressure
-from dewing_sim.inputs.inflow_schedule import InflowSchedule
+from dewing_sim.inputs.inflow_schedule import InflowSchedule, Outside
 from dewing_sim.parameters import Case, Disturbance
 from dewing_sim.scales import Scales
 
@@ -44,3 +47,10 @@ class Sources:
         if inflow is None and not schedule.is_steady:
             inflow = schedule.at(time / self.time_scale)
         return Inputs(inputs.v_squared, pressure, inflow)
+
+    def meets(self, time: float, gust: np.ndarray, motion: np.ndarray, scales: Scales) -> Inflow:
+        """Return the inflow of ``time`` (s) with what comes from outside, in SI, added."""
+        units = scales.time**np.arange(3)[:, None]
+        outside = Outside(gust * units[:2] / scales.speed,
+                          motion * units / np.array([scales.length, 1.0]))
+        return self.inflow_schedule.at(time / self.time_scale, outside)

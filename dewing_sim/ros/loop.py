@@ -100,6 +100,7 @@ class Loop:
 
     def _advance(self, v_squared: float):
         self.pending, self._granted = None, max(self._granted - 1, 0)
+        self._node.inputs.take()
         try:
             self.lockstep.advance(v_squared)
         except RunFailed as error:
@@ -118,6 +119,7 @@ class Loop:
         """Publish the present measurement for the first time, and what is due beside it."""
         self._node.question.ask(self.lockstep.outputs)
         self._node.telemetry.publish(self.lockstep.outputs)
+        self._node.inputs.publish()
 
     def _resume(self):
         self._node.status.set(messages.OK, 'paused' if self.paused else 'running')

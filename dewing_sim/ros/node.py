@@ -15,7 +15,8 @@ from std_msgs.msg import String
 
 from dewing_sim.build import build
 from dewing_sim.lockstep import LockStep
-from dewing_sim.ros import harness, messages, qos, report
+from dewing_sim.ros import harness, input_topics, messages, qos, report
+from dewing_sim.ros.input_topics import InputTopics
 from dewing_sim.ros.loop import Loop
 from dewing_sim.ros.question import Question
 from dewing_sim.ros.services import Services
@@ -41,7 +42,7 @@ class SimulatorNode(Node):
         self.plant, self.identity = self.built.plant, self.built.identity
         self.lockstep = LockStep(
             self.plant, self.built.load(restore) if restore else self.built.rest,
-            self.identity.v_squared_max)
+            self.identity.v_squared_max, input_topics.outside(self))
         self.exit_status: int | None = None
         self.status = Status(self, 'waiting for a controller and listeners', self._values)
         self._connect()
@@ -55,6 +56,7 @@ class SimulatorNode(Node):
         self._identity = self.create_publisher(String, 'case', qos.LATCHED)
         self.telemetry = Telemetry(
             self, self.case, self.run, self.plant.dt, self.lockstep.outputs)
+        self.inputs = InputTopics(self)
         # The last publisher: who listens to it, and so is waited for, knows of all others.
         self.question = Question(self, self.run.resend_period)
         self.loop = Loop(self)

@@ -56,5 +56,5 @@ def values(node) -> dict[str, Any]:
     loop, question = node.loop, node.question
     wall = question.asked - loop.began if loop.started else 0.0
     return dict(mode=node.run.mode, **node.lockstep.figures(wall), resent=question.resent,
-                missed_deadlines=loop.deadlines.missed,
+                missed_deadlines=loop.deadlines.missed, **node.inputs.figures,
                 **vars(node.built.monitor(node.lockstep.state)))

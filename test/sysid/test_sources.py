@@ -31,17 +31,23 @@ def campaign():
     return identity, dict(zip(planned.inputs, zip(inputs, outputs))), planned.names
 
 
-def record(path, campaign, *names, identities=()):
-    """Write a bag of the named runs, between which the plant is reset."""
+def record(path, campaign, *names, identities=(), gusts=()):
+    """Write a bag of the named runs, between which the plant is reset.
+
+    ``gusts`` are (run counted from 1, sample, upwards in m/s).
+    """
     identity, runs, outputs = campaign
     messages = [('/dewing/case', bags.TEXT, bags.text(each.to_yaml()))
                 for each in identities or (identity,)]
-    for name in names:
+    for number, name in enumerate(names, start=1):
         for k, (v_squared, values) in enumerate(zip(runs[name][0], runs[name][1].T)):
             stamp = nanoseconds(k * identity.dt)
             messages += [('/dewing/measurement', bags.JOINTS, bags.joints(stamp, outputs, values)),
                          ('/dewing/command', bags.JOINTS,
                           bags.joints(stamp, ['v_squared'], (), [v_squared]))]
+            messages += [('/dewing/inputs', bags.JOINTS,
+                          bags.joints(stamp, ['gust_along', 'gust_up'], [0.0, speed]))
+                         for run, sample, speed in gusts if (run, sample) == (number, k)]
     return bags.write(path, *messages)
 
 
@@ -59,6 +65,25 @@ def test_one_run_of_a_bag_is_the_experiment(campaign, tmp_path):
         sources.load(path, 3)
     with pytest.raises(BadInput, match='has no run 5; it has 1'):
         sources.load(path, 5)
+
+
+@pytest.mark.parametrize('gusts, run, said', [
+    ([(2, 3, 0.1), (2, 9, 0.0)], None, 'gust_up acted in run 2 from 0.0003 s on'),
+    ([(1, 3, 0.1)], None, 'gust_up acted in run 1 from 0.0003 s on'),
+    ([(1, 3, 0.1), (2, 3, 0.2)], 2, 'gust_up acted in run 2 from 0.0003 s on'),
+    ([(1, 3, 0.1), (2, 4, 0.1)], 2, 'gust_up acted in run 2'),
+    ([(1, 3, 0.1), (2, 3, 0.1)], None, ''),             # cancels
+    ([(3, 3, 0.1)], 2, ''),                             # in a run that is not taken
+    ([(1, 3, 0.0), (2, 5, 0.0)], None, '')])
+def test_what_a_gust_does_is_not_taken_for_the_response_to_v_squared(
+        campaign, tmp_path, gusts, run, said):
+    path = record(tmp_path / 'run.mcap', campaign, 'baseline', 'experiment',
+                  *(['prbs'] if run else []), gusts=gusts)
+    if said:
+        with pytest.raises(BadInput, match=said):
+            sources.load(path, run)
+    else:
+        assert list(sources.load(path, run)[0]) == ['experiment']
 
 
 def test_runs_that_could_be_the_same_are_not_guessed(campaign, tmp_path):
