@@ -3,7 +3,7 @@
 """The state of a flow on a map, and what a step has found short of the wall's final velocity."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,12 @@ from dewing_sim.fluid.conformal.geometry.wall import WallGeometry
 
 @dataclass(frozen=True)
 class FlowState:
-    """Everything the next step depends on; arrays over the strip are (n, rows)."""
+    """Everything the next step depends on; arrays over the strip are (n, rows).
+
+    What `reports` names only tells of the last step.
+    """
+
+    reports: ClassVar[tuple[str, ...]] = ('slip',)
 
     w: np.ndarray                   # vorticity in U / c
     q: np.ndarray                   # h^2 w
