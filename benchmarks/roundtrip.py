@@ -45,7 +45,7 @@ class Timed:
 
     def __init__(self, plant: Any, times: np.ndarray, watch: Callable):
         """Note into ``times``."""
-        self.dt, self.observe, self._step = plant.dt, plant.observe, plant.step
+        self._plant, self._step = plant, plant.step
         self._times, self._watch, self._made = times, watch, 0
 
     def step(self, state: Any, inputs: Any) -> Any:
@@ -54,6 +54,9 @@ class Timed:
         self._watch(self._made)
         self._made += 1
         return self._step(state, inputs)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._plant, name)
 
 
 def run(children: tuple[str, ...], steps: int, watch: Callable | None = None) -> dict[str, Any]:

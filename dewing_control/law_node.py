@@ -26,7 +26,7 @@ from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import Identity
 from dewing_sim.plant import Measurement
-from dewing_sim.ros import harness, messages, qos
+from dewing_sim.ros import codec, harness, messages, qos
 from dewing_sim.ros.status import Status
 
 WATCH_PERIOD = 1.0          # s, wall
@@ -60,8 +60,10 @@ class LawNode(Node, ABC):
         self.status = Status(self, 'waiting for the case', self._values)
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
+        self._measurements = codec.Reader('position')
+        self._layout = codec.layout(messages.COMMANDED, 'effort')
         self._measurement = self.create_subscription(
-            JointState, 'measurement', self._on_measurement, qos.LATEST)
+            JointState, 'measurement', self._on_measurement, qos.LATEST, raw=True)
         self.create_timer(WATCH_PERIOD, self._watch,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -87,13 +89,13 @@ class LawNode(Node, ABC):
                                               self.limit))
             self.status.set(messages.OK, 'running')
 
-    def _on_measurement(self, message: JointState):
+    def _on_measurement(self, data: bytes):
         """Answer; a measurement that comes before case and listeners will be sent again."""
         if self.answers is None or self.exit_status is not None or self._absent():
             return
         try:
-            v_squared = self.answers.to(messages.from_stamp(message.header.stamp),
-                                        messages.to_measurement(message))
+            read = self._measurements.read(data)
+            v_squared = self.answers.to(read.stamp, messages.measured(read))
         except BadInput as error:
             self.status.set(messages.WARN, str(error))
             return
@@ -102,7 +104,7 @@ class LawNode(Node, ABC):
             self.status.set(messages.ERROR, self.reason)
             return
         self.status.set(messages.OK, 'running')
-        if not qos.publish(self._command, messages.command(v_squared, message.header.stamp)):
+        if not qos.publish(self._command, self._layout.encode(read.stamp, (v_squared,))):
             self.status.set(messages.WARN, 'a listener of command does not keep up')
 
     def _absent(self) -> int:
@@ -116,8 +118,8 @@ class LawNode(Node, ABC):
 
     def _watch(self):
         """Look for a measurement that nobody told of, and say what is waited for."""
-        for message in qos.waiting(self._measurement):
-            self._on_measurement(message)
+        for data in qos.waiting(self._measurement):
+            self._on_measurement(data)
         if self.answers is not None and self._absent():
             self.status.set(messages.OK, f'waiting for {self._absent()} of '
                             f'{self.settings.command.subscribers} listeners of command')

@@ -17,7 +17,7 @@ from dewing_control.trial.closed_loop import controller, same_memory
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import Identity
-from dewing_sim.ros import given_parameters, harness, messages, qos
+from dewing_sim.ros import codec, given_parameters, harness, messages, qos
 from dewing_sim.ros.status import Status
 
 
@@ -48,7 +48,9 @@ class ControllerNode(Node):
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
         self._measurement = self.create_subscription(
-            JointState, 'measurement', self._on_measurement, qos.LATEST)
+            JointState, 'measurement', self._on_message, qos.LATEST, raw=True)
+        self._measurements = codec.Reader('position')
+        self._layout = codec.layout(messages.COMMANDED, 'effort')
         self.create_service(SetBool, '~/enable', self._on_enable)
         self._attended = False                      # all listeners of command were there
         self._heard = False                         # a measurement came in the last second
@@ -64,26 +66,27 @@ class ControllerNode(Node):
         except BadInput as error:
             self.status.set(messages.WARN, str(error))
 
-    def _on_measurement(self, message: JointState):
+    def _on_message(self, data: bytes):
+        try:
+            self._on_measurement(self._measurements.read(data))
+        except BadInput as error:
+            self.status.set(messages.WARN, str(error))
+
+    def _on_measurement(self, read: codec.Reading):
         """Answer; a measurement that comes before case and listeners will be sent again."""
         self._heard = True
         if self._law is None or self._absent():
             return
-        stamp = messages.from_stamp(message.header.stamp)
-        if stamp != self._stamp:
+        if read.stamp != self._stamp:
             try:
-                self._decide(messages.to_measurement(message), begin=stamp < self._stamp)
-            except BadInput as error:
-                self.status.set(messages.WARN, str(error))
-                return
+                self._decide(messages.measured(read), begin=read.stamp < self._stamp)
             except RunFailed as error:              # of a law from outside
                 self.exit_status, self.reason = 1, str(error)
                 self.status.set(messages.ERROR, self.reason)
                 return
-            self._stamp = stamp
+            self._stamp = read.stamp
             self._say_running()
-        if not qos.publish(self._command,
-                           messages.command(self._v_squared, message.header.stamp)):
+        if not qos.publish(self._command, self._layout.encode(read.stamp, (self._v_squared,))):
             self.status.set(messages.WARN, 'a listener of command does not keep up')
 
     def _absent(self) -> int:
@@ -96,8 +99,8 @@ class ControllerNode(Node):
 
     def _watch(self):
         """Look for a measurement that nobody told of, and say what is waited for."""
-        for message in qos.waiting(self._measurement):
-            self._on_measurement(message)
+        for data in qos.waiting(self._measurement):
+            self._on_message(data)
         if self._law is not None and self._absent():
             self.status.set(messages.OK, f'waiting for {self._absent()} of '
                             f'{self.settings.command.subscribers} listeners of command')

@@ -3,6 +3,7 @@
 """A plant stepped by commands that carry the stamp of the measurement they answer."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.outside import OutsideInputs
-from dewing_sim.plant import Outputs, Plant
+from dewing_sim.plant import Measurement, Outputs, Plant, measure
 from dewing_sim.quantities import schema
 
 
@@ -21,13 +22,17 @@ def nanoseconds(time: float) -> int:
 
 @dataclass
 class LockStep:
-    """The present state of a run and its counters; never steps on a command it refuses."""
+    """The present state of a run and its counters; never steps on a command it refuses.
+
+    Only what is measured is known after each step. The other `outputs` are observed when they are
+    asked for; if they are not finite, the state before is the present one again.
+    """
 
     plant: Plant
     state: Any
     v_squared_max: float
     outside: OutsideInputs | None = None    # what else acts on the plant
-    outputs: Outputs = field(init=False)
+    measurement: Measurement = field(init=False)
     v_squared: float = field(init=False)    # in force
     steps: int = 0                          # made in this run
     stale: int = 0                          # commands with another stamp
@@ -41,15 +46,34 @@ class LockStep:
 
     def restart(self, state: Any):
         """Continue from ``state`` with the V^2 that led to it."""
-        self.state, self.outputs = state, self._observe(state)
-        self.v_squared = self.outputs.v_squared
+        self.measurement = self._measure(state)
+        self.state = self._before = state
+        self._outputs: Outputs | None = None
+        self.v_squared = self.measurement.v_squared
         if self.outside is not None:
             self.outside.restart()
 
     @property
+    def outputs(self) -> Outputs:
+        """All outputs of the present state; raises `Diverged` for numbers that are not finite."""
+        if self._outputs is None:
+            outputs = self.plant.observe(self.state)
+            known = schema(type(outputs))
+            before, present = self._before, self.state
+            self.state = before         # unless all is well
+            _check(*known.given(outputs, known.scalars), self.steps, before)
+            self.state, self._outputs = present, outputs
+        return self._outputs
+
+    @property
+    def time(self) -> float:
+        """Simulated time in s."""
+        return self.measurement.time
+
+    @property
     def stamp(self) -> int:
         """Stamp of the present measurement in ns of simulated time."""
-        return nanoseconds(self.outputs.time)
+        return nanoseconds(self.measurement.time)
 
     def expects(self, stamp: int) -> bool:
         """Return whether ``stamp`` is that of the present measurement; count it if not."""
@@ -68,34 +92,39 @@ class LockStep:
         """Make one step; on `RunFailed` the last good state stays in ``state``."""
         began = perf_counter()
         state = self.plant.step(self.state, self._inputs(v_squared))
-        self.outputs = self._observe(state)
-        self.state, self.v_squared = state, v_squared
+        self.measurement = self._measure(state)
+        self._before, self.state, self._outputs = self.state, state, None
+        self.v_squared = v_squared
         self.steps += 1
         self.plant_seconds += perf_counter() - began
 
     def _inputs(self, v_squared: float) -> Inputs:
         if self.outside is None:
             return Inputs(v_squared)
-        return self.outside.during(v_squared, self.stamp, self.outputs.time + self.plant.dt)
+        return self.outside.during(v_squared, self.stamp, self.time + self.plant.dt)
 
     def figures(self, wall: float) -> dict[str, float]:
         """Return counters and speeds of a run that has taken ``wall`` s."""
         made = max(self.steps, 1)
         return dict(
-            simulated_time=self.outputs.time, v_squared=self.v_squared, steps=self.steps,
+            simulated_time=self.time, v_squared=self.v_squared, steps=self.steps,
             stale=self.stale, rejected=self.rejected, unanswered=self.unanswered,
-            clipped=self.outputs.clipped or 0,
+            clipped=getattr(self.state, 'clipped', 0),
             rtf=self.steps * self.plant.dt / wall if wall else 0.0,
             ms_per_step=1.0e3 * self.plant_seconds / made,
             overhead_ms_per_step=1.0e3 * max(wall - self.plant_seconds, 0.0) / made)
 
-    def _observe(self, state: Any) -> Outputs:
-        outputs = self.plant.observe(state)
-        known = schema(type(outputs))
-        for name, value in zip(*known.given(outputs, known.scalars)):
-            if not math.isfinite(value):
-                raise Diverged(f'{name} = {value} after step {self.steps + 1}', self.state)
-        return outputs
+    def _measure(self, state: Any) -> Measurement:
+        seen = measure(self.plant, state)
+        if not math.isfinite(sum(seen)):
+            _check(seen._fields, seen, self.steps + 1, self.state)
+        return seen
+
+
+def _check(names: Iterable[str], values: Iterable[float], step: int, last_good: Any):
+    for name, value in zip(names, values):
+        if not math.isfinite(value):
+            raise Diverged(f'{name} = {value} after step {step}', last_good)
 
 
 @dataclass

@@ -16,7 +16,7 @@ from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
 from dewing_sim.files import check_free
 from dewing_sim.identity import Identity
-from dewing_sim.ros import given_parameters, harness, qos
+from dewing_sim.ros import codec, given_parameters, harness, qos
 from dewing_sim.ros import messages as common
 from dewing_sim.ros.awake import Awake
 from dewing_sim.ros.rest import Rest
@@ -72,8 +72,10 @@ class SysidNode(Node):
         self._announcement = messages.Announcement(self)
         self._rest = Rest(self, self._on_rest)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
+        self._measurements = codec.Reader('position')
+        self._layout = codec.layout(common.COMMANDED, 'effort')
         self._measurement = self.create_subscription(
-            JointState, 'measurement', self._on_measurement, qos.LATEST)
+            JointState, 'measurement', self._on_measurement, qos.LATEST, raw=True)
         self.create_service(Trigger, '~/start', self._on_start)
         self.create_service(Trigger, '~/stop', self._on_stop)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -95,8 +97,8 @@ class SysidNode(Node):
             else:
                 self._begin()
         elif self._campaign:
-            for message in qos.waiting(self._measurement):      # of which nobody told
-                self._on_measurement(message)
+            for data in qos.waiting(self._measurement):     # of which nobody told
+                self._on_measurement(data)
             self._insist()
 
     def _insist(self):
@@ -146,18 +148,18 @@ class SysidNode(Node):
         if self._campaign and self._latest is not None:
             self._answer(self._latest)
 
-    def _on_measurement(self, message: JointState):
+    def _on_measurement(self, data: bytes):
         self._heard = self._awake()
         if self._rest.awaited:
-            self._latest = message
+            self._latest = data
         elif self._campaign:
-            self._answer(message)
+            self._answer(data)
 
-    def _answer(self, message: JointState):
+    def _answer(self, data: bytes):
         campaign = self._campaign
         try:
-            v_squared = campaign.answer(common.from_stamp(message.header.stamp),
-                                        dict(zip(message.name, message.position)))
+            stamp, names, values = self._measurements.read(data)
+            v_squared = campaign.answer(stamp, dict(zip(names, values)))
         except BadInput as error:
             self._finish(1, f'unusable measurement: {error}')
             return
@@ -165,7 +167,7 @@ class SysidNode(Node):
         if campaign.run_complete:
             self._next_run()
         elif v_squared is not None:
-            qos.publish(self._command, common.command(v_squared, message.header.stamp))
+            qos.publish(self._command, self._layout.encode(stamp, (v_squared,)))
 
     def _show_progress(self):
         share = self._campaign.progress

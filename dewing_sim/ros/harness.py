@@ -35,6 +35,7 @@ from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 
 from dewing_sim.errors import BadInput, DewingError, RunFailed
+from dewing_sim.machine import garbage
 from dewing_sim.machine.signals import Stop
 
 SPIN = 0.2                      # s, longest time without a look at signals and conditions
@@ -82,9 +83,11 @@ class Session:
         A signal that asks for the end raises `Interrupted` between two callbacks.
         """
         deadline = monotonic() + timeout
-        with Stop(orderly=True) as stop:
+        with Stop(orderly=True) as stop, garbage.Deferred() as collector:
             while not condition():
-                remaining = deadline - monotonic()
+                now = monotonic()
+                collector.look(now)
+                remaining = deadline - now
                 if remaining <= 0.0:
                     raise RunFailed(f'the condition did not hold within {timeout:g} s')
                 self.executor.spin_once(timeout_sec=min(SPIN, remaining))
@@ -141,8 +144,10 @@ def _spin(node: Node, stop: Stop) -> int:
     executor.add_node(node)
     stop.orderly = True
     try:
-        while not stop.asked and getattr(node, 'exit_status', None) is None:
-            executor.spin_once(timeout_sec=SPIN)
+        with garbage.Deferred() as collector:
+            while not stop.asked and getattr(node, 'exit_status', None) is None:
+                executor.spin_once(timeout_sec=SPIN)
+                collector.look(monotonic())
         node.interrupt()
     finally:
         executor.shutdown()

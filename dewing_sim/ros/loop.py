@@ -6,11 +6,10 @@ from time import monotonic
 from typing import Any
 
 from rclpy.clock import Clock, ClockType
-from sensor_msgs.msg import JointState
 
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.lockstep import Deadlines
-from dewing_sim.ros import messages
+from dewing_sim.ros import codec, messages
 
 
 class Loop:
@@ -23,6 +22,7 @@ class Loop:
     def __init__(self, node):
         """Begin before the first measurement: nothing is stepped until `start`."""
         self._node, self._run, self.lockstep = node, node.run, node.lockstep
+        self._commands = codec.Reader('effort')
         self.locked = self._run.mode == 'lockstep'
         self.paused = self.started = False
         self.pending: float | None = None       # V^2 that came while paused
@@ -64,15 +64,15 @@ class Loop:
         """Make no further step by itself."""
         self._pace.cancel()
 
-    def on_command(self, message: JointState):
+    def on_command(self, data: bytes):
         """Take a command: step on it, keep it, or say why it is not obeyed."""
         if not self.running:
             return
-        stamp = messages.from_stamp(message.header.stamp)
-        if self.locked and not self.lockstep.expects(stamp):
-            return
         try:
-            v_squared = messages.to_v_squared(message)
+            command = self._commands.read(data)
+            if self.locked and not self.lockstep.expects(command.stamp):
+                return
+            v_squared = messages.commanded(command)
             self.lockstep.check(v_squared)
         except BadInput as error:
             self.lockstep.rejected += 1
@@ -80,7 +80,7 @@ class Loop:
             return
         if not self.locked:
             self.lockstep.v_squared = v_squared
-            self._node.question.answered |= stamp == self.lockstep.stamp
+            self._node.question.answered |= command.stamp == self.lockstep.stamp
         elif self.paused and not self._granted:
             self.pending = v_squared
         else:
@@ -103,22 +103,25 @@ class Loop:
         self._node.inputs.take()
         try:
             self.lockstep.advance(v_squared)
+            self._ask()
         except RunFailed as error:
             self._node.finish(1, str(error))
             return
-        if self._node.status.level != messages.OK:
+        if self._node.status.level != messages.OK and not self._node.question.blocked:
             self._node.status.set(messages.OK, 'running')
         if self._run.save_steps and self.lockstep.steps % self._run.save_steps == 0:
             self._node.served.save()
-        self._ask()
         end = self._run.duration
-        if end and self.lockstep.outputs.time > end - 0.5 * self._node.plant.dt:
+        if end and self.lockstep.time > end - 0.5 * self._node.plant.dt:
             self._node.finish(0, f'finished at {end:g} s')
 
     def _ask(self):
-        """Publish the present measurement for the first time, and what is due beside it."""
-        self._node.question.ask(self.lockstep.outputs)
-        self._node.telemetry.publish(self.lockstep.outputs)
+        """Publish the measurement, then, while it is answered, what is due beside it.
+
+        What is found wrong here ends the run before the answer is used.
+        """
+        self._node.question.ask()
+        self._node.telemetry.publish(self.lockstep)
         self._node.inputs.publish()
 
     def _resume(self):

@@ -31,10 +31,10 @@ from dewing_sim.errors import BadInput
 from dewing_sim.parameters import Case, Flow
 from dewing_sim.plant import Measurement, Outputs, measurement_type
 from dewing_sim.quantities import schema
-from dewing_sim.ros import names
+from dewing_sim.ros import codec, names
 
 MEASURED = list(schema(Outputs).measured)      # by the wing
-COMMANDED = ['v_squared']
+COMMANDED = ('v_squared',)
 MEMBRANE_FIELDS = ('x', 'y', 'z', 'dp', 'tension')
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
@@ -66,13 +66,16 @@ def to_measurement(message: JointState) -> Measurement:
 
     A quantity that the message does not have is missed when a controller asks for it.
     """
-    names = tuple(message.name)
-    if len(names) != len(message.position):
-        raise BadInput(f'measurement with {len(names)} names and {len(message.position)} '
-                       f'positions')
+    return measured(codec.reading(message, 'position'))
+
+
+def measured(read: codec.Reading) -> Measurement:
+    """Return the quantities of a measurement that was read, as `to_measurement` does."""
+    stamp, names, values = read
+    if len(names) != len(values):
+        raise BadInput(f'measurement with {len(names)} names and {len(values)} positions')
     try:
-        return measurement_type(names)(from_stamp(message.header.stamp) * 1.0e-9,
-                                       *message.position)
+        return measurement_type(names)(stamp * 1.0e-9, *values)
     except ValueError as error:
         raise BadInput(f'measurement with unusable names: {error}') from None
 
@@ -86,10 +89,15 @@ def command(v_squared: float, stamp: Time) -> JointState:
 
 def to_v_squared(message: JointState) -> float:
     """Return V^2 of a command; raise `BadInput` if it is not one."""
-    if list(message.name) != COMMANDED or len(message.effort) != 1:
-        raise BadInput(f'command with names {list(message.name)} and {len(message.effort)} '
+    return commanded(codec.reading(message, 'effort'))
+
+
+def commanded(read: codec.Reading) -> float:
+    """Return V^2 of a command that was read, as `to_v_squared` does."""
+    if read.names != COMMANDED or len(read.values) != 1:
+        raise BadInput(f'command with names {list(read.names)} and {len(read.values)} '
                        f'efforts; expected one effort named v_squared')
-    return message.effort[0]
+    return read.values[0]
 
 
 def scalar(value: float) -> Float64:

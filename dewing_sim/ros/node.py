@@ -61,7 +61,7 @@ class SimulatorNode(Node):
         self.question = Question(self, self.run.resend_period)
         self.loop = Loop(self)
         self.command = self.create_subscription(
-            JointState, 'command', self.loop.on_command, qos.LATEST)
+            JointState, 'command', self.loop.on_command, qos.LATEST, raw=True)
         self.served = Services(self)
         self.add_on_set_parameters_callback(self._on_parameters)
         self.watch = Watch(self)
@@ -91,7 +91,7 @@ class SimulatorNode(Node):
     def interrupt(self):
         """End the run as asked from outside, the state saved if a file is named for it."""
         if self.exit_status is None:
-            self.finish(0, f'interrupted at {self.lockstep.outputs.time:.6f} s')
+            self.finish(0, f'interrupted at {self.lockstep.time:.6f} s')
 
 
 def main(args=None) -> int:

@@ -6,8 +6,7 @@ from time import monotonic
 
 from sensor_msgs.msg import JointState
 
-from dewing_sim.plant import Outputs
-from dewing_sim.ros import messages, qos
+from dewing_sim.ros import codec, messages, qos
 
 
 class Question:
@@ -18,10 +17,11 @@ class Question:
 
     def __init__(self, node, resend_period: float):
         """Advertise ``measurement`` on ``node``."""
-        self._status = node.status
+        self._status, self._lockstep = node.status, node.lockstep
+        self._layout = codec.layout(node.lockstep.measurement._fields[1:], 'position')
+        self._message = b''
         self._publisher = node.create_publisher(JointState, 'measurement', qos.LOOP)
         self._resend_period = resend_period
-        self._outputs: Outputs | None = None
         self.asked = self._sent = monotonic()       # for the first and for the last time
         self.answered, self.blocked, self.resent = True, False, 0
 
@@ -30,15 +30,16 @@ class Question:
         """Number of subscriptions to ``measurement``."""
         return self._publisher.get_subscription_count()
 
-    def ask(self, outputs: Outputs) -> None:
-        """Publish the measurement of ``outputs`` for the first time."""
-        self._outputs, self.answered = outputs, False
+    def ask(self) -> None:
+        """Publish the present measurement for the first time."""
+        lockstep, self.answered = self._lockstep, False
+        self._message = self._layout.encode(lockstep.stamp, lockstep.measurement[1:])
         self.asked = self._sent = monotonic()
         self.offer()
 
     def offer(self) -> None:
         """Publish the present measurement (again), or say that it cannot be taken."""
-        self.blocked = not qos.publish(self._publisher, messages.measurement(self._outputs))
+        self.blocked = not qos.publish(self._publisher, self._message)
         if self.blocked:
             self._status.set(messages.WARN, f'{self.missing}: simulated time waits for it')
 

@@ -67,4 +67,4 @@ class Services:
         return True, f'{self._at()}, from {path}'
 
     def _at(self) -> str:
-        return f'at {self._node.lockstep.outputs.time:.9f} s'
+        return f'at {self._node.lockstep.time:.9f} s'

@@ -5,6 +5,7 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from dewing_sim.lockstep import LockStep
 from dewing_sim.parameters import Case
 from dewing_sim.plant import Outputs
 from dewing_sim.quantities import schema
@@ -18,7 +19,7 @@ class Channel(NamedTuple):
 
     publisher: Any
     period: int
-    make: Callable[[Outputs], Any]
+    make: Callable[[LockStep], Any]
 
 
 class Telemetry:
@@ -38,20 +39,20 @@ class Telemetry:
             return Channel(node.create_publisher(kind, topic, qos.every(period)), period, make)
 
         self._channels = [channel(each.topic, messages.Float64, run.scalar_rate,
-                                  _scalar(each.name))
+                                  _scalar(each.name, outputs))
                           for each in schema(type(outputs)).quantities
                           if each.topic and getattr(outputs, each.name) is not None]
         if _has(outputs, 'cl', 'cd', 'cm') and run.plant != 'reduced':
             self._channels.append(channel(
                 'loads', messages.WrenchStamped, run.scalar_rate,
-                lambda outputs: messages.loads(outputs, case.flow, case.membrane.chord, wind)))
+                lambda now: messages.loads(now.outputs, case.flow, case.membrane.chord, wind)))
         if _has(outputs, 'x', 'y', 'pressure_jump', 'tension'):
             self._channels += [
                 channel('membrane', messages.PointCloud2, run.membrane_rate,
-                        lambda outputs: messages.membrane(outputs, wing)),
+                        lambda now: messages.membrane(now.outputs, wing)),
                 channel('membrane_marker', messages.Marker, run.membrane_rate,
-                        lambda outputs: messages.membrane_marker(
-                            outputs, run.marker_exaggeration, wing))]
+                        lambda now: messages.membrane_marker(
+                            now.outputs, run.marker_exaggeration, wing))]
 
     @property
     def listeners(self) -> int:
@@ -63,13 +64,16 @@ class Telemetry:
         return self.clock.listeners + sum(channel.publisher.get_subscription_count()
                                           for channel in self._channels)
 
-    def publish(self, outputs: Outputs) -> None:
-        """Publish what is due at the time of ``outputs``."""
-        step = round(outputs.time / self._dt)
-        self.clock.publish(outputs.time, step)
+    def publish(self, lockstep: LockStep) -> None:
+        """Publish what is due at the present time; raise `RunFailed` for what is not finite.
+
+        What is not measured is observed only if somebody listens to it.
+        """
+        step = round(lockstep.time / self._dt)
+        self.clock.publish(lockstep.time, step)
         for publisher, period, make in self._channels:
             if step % period == 0 and publisher.get_subscription_count():
-                publisher.publish(make(outputs))
+                publisher.publish(make(lockstep))
 
 
 def _period(rate: float, dt: float) -> int:
@@ -77,8 +81,10 @@ def _period(rate: float, dt: float) -> int:
     return max(1, round(1.0 / (rate * dt)))
 
 
-def _scalar(name: str) -> Callable[[Outputs], Any]:
-    return lambda outputs: messages.scalar(getattr(outputs, name))
+def _scalar(name: str, outputs: Outputs) -> Callable[[LockStep], Any]:
+    if name in schema(type(outputs)).measured:
+        return lambda now: messages.scalar(getattr(now.measurement, name))
+    return lambda now: messages.scalar(getattr(now.outputs, name))
 
 
 def _has(outputs: Outputs, *names: str) -> bool:

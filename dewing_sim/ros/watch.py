@@ -54,8 +54,8 @@ class Watch:
         if not self._loop.started:
             self._start_when_ready(now)
         elif self._loop.awaits_command:
-            for message in qos.waiting(self._node.command):
-                self._loop.on_command(message)
+            for data in qos.waiting(self._node.command):
+                self._loop.on_command(data)
             self._question.repeat(monotonic())
             self._insist(now)
         if self._loop.paced:
@@ -88,7 +88,7 @@ class Watch:
         waited = now - self._asked[1] if asked == self._asked[0] else 0.0
         if waited > run.command_timeout + run.hold_timeout:
             self._node.finish(1, f'{missing} for {waited:.1f} s of wall time at '
-                                 f'{lockstep.outputs.time:.6f} s: stopped')
+                                 f'{lockstep.time:.6f} s: stopped')
             return
         if waited > run.command_timeout and self._held != asked:
             self._held = asked

@@ -68,9 +68,9 @@ def test_a_controller_of_your_own(plant):
 class Mortal(ControllerNode):
     """A controller that falls silent after a hundred answers."""
 
-    def _on_measurement(self, message):
-        if messages.from_stamp(message.header.stamp) < 10_000_000:
-            super()._on_measurement(message)
+    def _on_measurement(self, read):
+        if read.stamp < 10_000_000:
+            super()._on_measurement(read)
 
 
 def test_an_injected_fault(plant):

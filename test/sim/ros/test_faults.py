@@ -110,9 +110,9 @@ class Slow(ControllerNode):
 
     delays = random.Random(1)
 
-    def _on_measurement(self, message):
+    def _on_measurement(self, read):
         time.sleep(self.delays.choice((*10 * (0.0,), 0.002, 0.005, 0.12)))
-        super()._on_measurement(message)
+        super()._on_measurement(read)
 
 
 def test_a_slow_controller_gives_the_same_run_bit_for_bit(both):
