@@ -26,7 +26,7 @@ class Loop:
         self.locked = self._run.mode == 'lockstep'
         self.paused = self.started = False
         self.pending: float | None = None       # V^2 that came while paused
-        self._granted = 0                       # steps of a paused run still to be made
+        self.granted = 0                        # steps of a paused run still to be made
         self.began = monotonic()
         self.deadlines = Deadlines(
             node.plant.dt / self._run.rate if self._run.mode == 'realtime' else 0.0)
@@ -63,6 +63,7 @@ class Loop:
     def stop(self):
         """Make no further step by itself."""
         self._pace.cancel()
+        self._revoke('the run ended before they were made')
 
     def on_command(self, data: bytes):
         """Take a command: step on it, keep it, or say why it is not obeyed."""
@@ -81,7 +82,7 @@ class Loop:
         if not self.locked:
             self.lockstep.v_squared = v_squared
             self._node.question.answered |= command.stamp == self.lockstep.stamp
-        elif self.paused and not self._granted:
+        elif self.paused and not self.granted:
             self.pending = v_squared
         else:
             self._advance(v_squared)
@@ -99,7 +100,8 @@ class Loop:
         self._advance(self.lockstep.v_squared)
 
     def _advance(self, v_squared: float):
-        self.pending, self._granted = None, max(self._granted - 1, 0)
+        was_granted, self.pending = self.granted, None
+        self.granted = max(was_granted - 1, 0)
         self._node.inputs.take()
         try:
             self.lockstep.advance(v_squared)
@@ -108,9 +110,11 @@ class Loop:
             self._node.finish(1, str(error))
             return
         if self._node.status.level != messages.OK and not self._node.question.blocked:
-            self._node.status.set(messages.OK, 'running')
+            self._say_state()
         if self._run.save_steps and self.lockstep.steps % self._run.save_steps == 0:
             self._node.served.save()
+        if was_granted == 1:
+            self._node.served.steps_end()
         end = self._run.duration
         if end and self.lockstep.time > end - 0.5 * self._node.plant.dt:
             self._node.finish(0, f'finished at {end:g} s')
@@ -124,14 +128,19 @@ class Loop:
         self._node.telemetry.publish(self.lockstep)
         self._node.inputs.publish()
 
-    def _resume(self):
+    def _say_state(self):
         self._node.status.set(messages.OK, 'paused' if self.paused else 'running')
+
+    def _resume(self):
+        self._say_state()
         if not (self.locked or self.paused):
             self.wind_up()
 
     def pause(self, wanted: bool):
         """Hold simulated time, or go on."""
         self.paused = wanted
+        if not wanted:
+            self._revoke('the run was let go on before they were made')
         if wanted:
             self._pace.cancel()
         if self.running:
@@ -140,20 +149,28 @@ class Loop:
                 self._advance(self.pending)
 
     def make_steps(self, count: int) -> bool:
-        """Make ``count`` steps of a paused run; in lock-step all but the first await commands."""
-        if not (self.running and self.paused
-                and (not self.locked or self.pending is not None)):
+        """Grant a paused run ``count`` steps, unless it has some; in lock-step they await answers.
+
+        ``granted`` are those that are not made on return.
+        """
+        if not (self.running and self.paused and not self.granted):
             return False
-        self._granted = count
-        if self.locked:
+        self.granted = count
+        if self.locked and self.pending is not None:
             self._advance(self.pending)
-        while not self.locked and self._granted and self.running:
+        while not self.locked and self.granted and self.running:
             self._advance(self.lockstep.v_squared)
         return True
 
+    def _revoke(self, reason: str):
+        """Grant no further step for a ``reason``, and tell who waits for them."""
+        self.granted = 0
+        self._node.served.steps_end(reason)
+
     def restart(self, state: Any):
         """Go on from ``state`` at its time."""
+        self._revoke('the run began anew before they were made')
         self.lockstep.restart(state)
-        self.pending, self._granted = None, 0
+        self.pending = None
         if self.started:
             self._ask()

@@ -182,11 +182,11 @@ def test_services_pause_step_reset_and_save(scripted, tmp_path):
     services = {name: script.create_client(kind, f'simulator/{name}') for name, kind in (
         ('pause', SetBool), ('step', Trigger), ('reset', Trigger), ('save', Trigger))}
     assert call(session, services['pause'], SetBool.Request(data=True)).success
-    assert not call(session, services['step'], Trigger.Request()).success
     script.send(1.0e5)
     session.spin_until(lambda: simulator.loop.pending is not None, PATIENCE)
     assert simulator.lockstep.steps == 0
     assert call(session, services['step'], Trigger.Request()).message == 'at 0.000100000 s'
+    assert simulator.lockstep.steps == 1
     assert call(session, services['save'], Trigger.Request()).success
     assert simulator.built.load(str(tmp_path / 'state.npz')).step == 1
     assert call(session, services['reset'], Trigger.Request()).success
