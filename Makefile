@@ -12,7 +12,7 @@ PYTEST_OPTIONS ?=
 DEMO_OPTIONS ?= --force
 BENCH_OPTIONS ?=
 
-.PHONY: help venv demo test lint bench bench-peers docs docs-venv links long clean
+.PHONY: help venv demo test lint bench bench-peers kernels-wheel docs docs-venv links long clean
 
 help:
 	@echo 'make demo   the closed loop over ROS 2: simulator and controller as two processes'
@@ -20,6 +20,7 @@ help:
 	@echo 'make lint   linters'
 	@echo 'make bench  time per step'
 	@echo 'make bench-peers  time of a plate beside NGSolve and OpenFOAM, where these are installed'
+	@echo 'make kernels-wheel  compiled kernels as a wheel in dist/, for this Python and processors with AVX2'
 	@echo 'make docs   the browsable documentation, in build/docs; warnings are errors'
 	@echo 'make links  the external links of the documentation, over the network'
 	@echo 'make long   every command of the documentation that takes long, an hour or more'
@@ -48,6 +49,9 @@ bench-peers: venv
 	@OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
 		$(BIN)/python benchmarks/peers/compare.py --json out/peers.json --force
 
+kernels-wheel: venv
+	@$(BIN)/python scripts/kernels_wheel.py dist
+
 docs: docs-venv
 	@$(SPHINX) -W -q -b html docs build/docs
 	@echo 'build/docs/index.html'
@@ -64,3 +68,4 @@ long: venv
 
 clean:
 	rm -rf '$(VENV)' '$(VENV)-docs' docs/autoapi build dist install log *.egg-info .pytest_cache .ruff_cache .hypothesis
+	find dewing_* -name '*.nb[ic]' -delete

@@ -144,6 +144,15 @@ def add_to_ament_index(folder: Path) -> None:
         link.symlink_to(target)
 
 
+def compile_kernels(folder: Path) -> None:
+    """Compile what most runs need, on all cores; without it each is compiled at its first use."""
+    print('Compiling the solvers, one on each core.', flush=True)
+    made = subprocess.run([str(folder / 'bin' / 'python'), '-m', 'dewing_sim.prepare'],
+                          cwd=PROJECT)
+    if made.returncode:
+        print('The solvers could not be compiled now; their first use will tell why.')
+
+
 def _runs(python: str, code: str) -> bool:
     """Whether ``python`` runs ``code``."""
     try:
@@ -177,6 +186,8 @@ def main() -> None:
                                                     'import rclpy'):
         sys.exit('ROS is installed but rclpy cannot be imported: '
                  f'try {folder}/bin/python -c "import rclpy".')
+    if not requirements:
+        compile_kernels(folder)
     stamp.write_text(wanted)
     print(f'{folder.name} is ready after {time.monotonic() - started:.0f} s.')
 

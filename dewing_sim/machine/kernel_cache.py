@@ -5,7 +5,8 @@
 Numba itself looks at the file of a function, so that a change of what the function calls has no
 effect. Here the stamp of an index is the `content.digest` of the function. What cannot be read,
 for example since it names a module that an upgrade has moved, counts as not there and is replaced;
-where nothing can be written, functions are compiled at each start.
+where nothing can be written, functions are compiled at each start. Before it comes to that, they
+are sought among those `prepared` beforehand.
 """
 
 import glob
@@ -18,7 +19,7 @@ from typing import Any
 
 from numba.core import caching
 
-from dewing_sim.machine import content
+from dewing_sim.machine import content, prepared
 
 
 class _UserWide(caching.UserWideCacheLocator):
@@ -46,6 +47,15 @@ class _Implementation(caching.CompileResultCacheImpl):
         if name != fullname:            # several of one name may live at a time
             name = f'{name}-{self._digest[:16]}'
         return f'{name}.py{sys.version_info[0]}{sys.version_info[1]}{abiflags}'
+
+
+class _Prepared(_Implementation):
+    _locator_classes = [prepared.Locator]
+
+
+def write_prepared() -> None:
+    """Let this process keep what it compiles in `prepared.folder`, and look nowhere else."""
+    _Implementation._locator_classes = [prepared.Locator]
 
 
 class _Files(caching.IndexDataCacheFile):
@@ -82,29 +92,44 @@ class KernelCache(caching.FunctionCache):
         self._py_func, self._options = function, options
         self._name = repr(function)
         self._cache_path = self._cache_file = None
+        self._digest = ''
         self.enable()
 
     def _open(self) -> bool:
         """Find the folder and return True, or False where there is none."""
         if self._cache_file is None and self._enabled:
-            digest = content.digest(self._py_func, self._options)
+            self._digest = content.digest(self._py_func, self._options)
             try:
-                self._impl = _Implementation(self._py_func, digest)
+                self._impl = _Implementation(self._py_func, self._digest)
             except (RuntimeError, OSError, TypeError):      # no folder, or no file
                 self.disable()
                 return False
             self._cache_path = self._impl.locator.get_cache_path()
-            self._cache_file = _Files(self._cache_path, self._impl.filename_base, digest)
+            self._cache_file = _Files(self._cache_path, self._impl.filename_base, self._digest)
         return self._enabled
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the function compiled for a signature, None if it is not there."""
-        if not self._open():
+        for load in (self._load_own, self._load_prepared):
+            try:
+                found = load(sig, target_context)
+            except Exception:           # unpickling may raise anything
+                continue
+            if found is not None:
+                return found
+        return None
+
+    def _load_own(self, sig: Any, target_context: Any) -> Any:
+        return super().load_overload(sig, target_context) if self._open() else None
+
+    def _load_prepared(self, sig: Any, target_context: Any) -> Any:
+        made_for = prepared.target(target_context.codegen().magic_tuple())
+        if made_for is None:
             return None
-        try:
-            return super().load_overload(sig, target_context)
-        except Exception:               # unpickling may raise anything
-            return None
+        place = _Prepared(self._py_func, self._digest)
+        files = _Files(place.locator.get_cache_path(), place.filename_base, self._digest)
+        data = files.load((sig, made_for, content.classes(sig)))
+        return data and place.rebuild(target_context, data)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function where that is possible."""
