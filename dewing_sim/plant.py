@@ -73,6 +73,11 @@ MEANING = """What a controller sees of a plant at one instant (SI); ``v_squared`
     """
 
 
+def instant(time: float) -> float:
+    """Return ``time`` (s) as measurements have it, a whole number of nanoseconds."""
+    return round(time * 1.0e9) * 1.0e-9
+
+
 class Seen:
     """What all measurements have, whichever quantities they hold."""
 
@@ -84,7 +89,7 @@ class Seen:
         """Return the measured part of ``outputs``, without what the plant does not have."""
         known = schema(type(outputs))
         names, values = known.given(outputs, known.measured)
-        return measurement_type(names)(round(outputs.time * 1.0e9) * 1.0e-9, *values)
+        return measurement_type(names)(instant(outputs.time), *values)
 
     def __getattr__(self, name: str) -> Any:
         raise Absent(f'measurement without {name}; it has {", ".join(self._fields[1:])}')

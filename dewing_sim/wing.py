@@ -24,12 +24,13 @@ from dewing_sim.inputs.base import Inputs
 from dewing_sim.inputs.sources import Motion, Pressure, Sources
 from dewing_sim.machine import compilation
 from dewing_sim.parameters import Case
-from dewing_sim.plant import Measurement, Outputs
+from dewing_sim.plant import Measurement, Outputs, instant
 from dewing_sim.rest import trim
 from dewing_sim.scales import Scales
 from dewing_sim.state import State
 from dewing_sim.structure import elements
 from dewing_sim.structure.bearable import Bearable
+from dewing_sim.structure.camber import camber
 from dewing_sim.structure.dynamics.step import Operator
 from dewing_sim.structure.material.elastomer import VACUUM_PERMITTIVITY
 from dewing_sim.structure.material.limits import require_tension
@@ -135,14 +136,14 @@ class Wing:
         """Return the outputs of ``state`` in SI units."""
         chord = self.scales.length
         loads = self.fluid.loads(state.flow)
-        x, y = self.membrane.surface(state.motion.position).T
-        camber, place = peak(x, y)
+        line = self.membrane.surface(state.motion.position)
+        mean, largest, place = camber(line)
+        x, y = line.T
         sheet = self.membrane.settled(state.motion).respond(state.motion.position, state.v_squared)
         return Outputs(
             time=state.step * self.dt, v_squared=state.v_squared,
             cl=loads.cl, cd=loads.cd, cm=loads.cm,
-            camber_mean=chord * float(0.5 * (y[1:] + y[:-1]) @ (x[1:] - x[:-1])),
-            camber_max=chord * camber, camber_max_position=place,
+            camber_mean=chord * mean, camber_max=chord * largest, camber_max_position=place,
             tension=self.scales.tension * float(sheet.tension.sum()) / sheet.tension.size,
             electric_field=math.sqrt(state.v_squared) / (chord * float(sheet.thickness.min())),
             capacitance=self._permittivity * electrode_ratio(x, y, sheet.thickness),
@@ -152,7 +153,11 @@ class Wing:
 
     def measure(self, state: State) -> Measurement:
         """Return the measured outputs of ``state``, those of `observe`."""
-        return Measurement.of(self.observe(state))
+        chord, loads = self.scales.length, self.fluid.loads(state.flow)
+        mean, largest, _ = camber(self.membrane.surface(state.motion.position))
+        return Measurement(
+            time=instant(state.step * self.dt), camber_mean=chord * mean,
+            camber_max=chord * largest, cl=loads.cl, cd=loads.cd, v_squared=state.v_squared)
 
     def monitor(self, state: State) -> Monitor:
         """Return how near the flow of ``state`` is to the largest time step it bears."""
@@ -178,23 +183,3 @@ def electrode_ratio(x: np.ndarray, y: np.ndarray, thickness: np.ndarray) -> floa
     deformed sheet, whose electrodes lie along the arc.
     """
     return float(np.hypot(x[1:] - x[:-1], y[1:] - y[:-1]) @ (1.0 / thickness))
-
-
-def peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Return the deflection of largest magnitude and its place, by a parabola through three nodes.
-
-    It is negative where the membrane bends down further than up.
-    """
-    k = int(np.argmax(np.abs(y)))
-    if y[k] < 0.0:
-        depth, place = peak(x, -y)
-        return -depth, place
-    if k in (0, len(y) - 1):
-        return float(y[k]), float(x[k])
-    before, after = float(x[k] - x[k - 1]), float(x[k + 1] - x[k])
-    rise, fall = float(y[k] - y[k - 1]) / before, float(y[k + 1] - y[k]) / after
-    if fall >= rise:
-        return float(y[k]), float(x[k])
-    slope = (rise * after + fall * before) / (before + after)
-    offset = 0.5 * slope * (before + after) / (rise - fall)
-    return float(y[k]) + 0.5 * slope * offset, float(x[k]) + offset

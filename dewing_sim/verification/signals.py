@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.records import spectrum
-from dewing_sim.wing import peak
+from dewing_sim.structure.camber import peak
 
 BLOCKS = 8              # of a time series, for the error of its mean
 

@@ -18,7 +18,7 @@ from dewing_control.tuning.printed import printed_gains
 from dewing_sim import build, parameters
 from dewing_sim.errors import BadInput
 from dewing_sim.identity import Identity, reference_deflection, require_reference
-from dewing_sim.wing import peak
+from dewing_sim.structure.camber import peak
 
 REALTIME = {'numerics.engine': 'conformal', 'numerics.grid': 'realtime',
             'numerics.time_step': 5.0e-4, 'numerics.trim_time': 12.0, 'membrane.elements': 32}

@@ -12,7 +12,7 @@ from dewing_sim import parameters
 from dewing_sim.errors import BadInput, Slack
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.lockstep import LockStep
-from dewing_sim.plant import SCALARS, rollout
+from dewing_sim.plant import SCALARS, Measurement, rollout
 from dewing_sim.rest import checkpoint, trim
 from dewing_sim.wing import Wing
 
@@ -36,6 +36,7 @@ def paper() -> Wing:
 
 def test_paper_wing_at_rest_meets_its_targets(paper):
     outputs = paper.observe(paper.rest())
+    assert paper.measure(paper.rest()) == Measurement.of(outputs)
     assert outputs.time == 0.0
     assert outputs.cl == pytest.approx(0.395, rel=0.015)
     assert outputs.camber_max / paper.reference_deflection == pytest.approx(0.325, rel=0.04)

@@ -8,6 +8,7 @@ function.  The wall pressure is an affine function of the wall acceleration with
 mass, so the membrane is solved together with it.
 """
 
+import cmath
 import math
 from dataclasses import replace
 
@@ -136,13 +137,12 @@ class Conformal(Fluid):
 
     def loads(self, state: FlowState) -> Loads:
         """Integrate pressure and wall shear around the wing."""
-        grid = self.grid
         around = self.geometry.at_rest(state.map)
-        traction = force(state.pressure, state.w[:, 0], around.line.slope, self.nu)
-        total = np.sum(traction) * grid.step * np.exp(-1j * state.incidence)
-        moment = np.sum(np.conj(around.line.place - 0.25) * traction).imag * grid.step
-        return Loads(around.jump(state.pressure), cl=2.0 * float(total.imag),
-                     cd=2.0 * float(total.real), cm=-2.0 * float(moment))
+        total, moment = force(state.pressure, state.w, around.line.place, around.line.slope,
+                              self.nu, self.grid.step)
+        total *= cmath.exp(-1j * state.incidence)
+        return Loads(around.jump(state.pressure), cl=2.0 * total.imag, cd=2.0 * total.real,
+                     cm=-2.0 * moment)
 
     def slip(self, state: FlowState) -> float:
         """Return the largest slip shed in the last step, in U: 0 at rest."""

@@ -117,7 +117,15 @@ def _dot(a, b):
     return total
 
 
-def force(pressure: np.ndarray, vorticity: np.ndarray, slope: np.ndarray, nu: float,
-          ) -> np.ndarray:
-    """Return d(Fx + i Fy) / d xi = (-p + i nu w) z_zeta (n,) of the flow on the membrane."""
-    return (-pressure + 1j * nu * vorticity) * slope
+@kernel
+def force(pressure, w, place, slope, nu, step):
+    """Return Fx + i Fy of the flow on the membrane, and the moment about c/4, nose down.
+
+    They integrate (-p + i nu w) z_zeta over xi, ``step`` apart; ``w`` (n, rows) is vorticity.
+    """
+    total, moment = complex(0.0, 0.0), 0.0
+    for i in range(pressure.size):
+        traction = complex(-pressure[i], nu * w[i, 0]) * slope[i]
+        total += traction
+        moment += (place[i].real - 0.25) * traction.imag - place[i].imag * traction.real
+    return total * step, moment * step

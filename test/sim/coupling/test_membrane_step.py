@@ -15,6 +15,7 @@ from dewing_sim.errors import Diverged, RunFailed, Slack
 from dewing_sim.fluid.base import Prediction, Wall
 from dewing_sim.fluid.inflow import Inflow
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.plant import Measurement
 from dewing_sim.rest import trim
 from dewing_sim.structure.dynamics.motion import Motion
 from dewing_sim.structure.dynamics.step import Operator
@@ -118,3 +119,4 @@ def test_a_wing_flies_the_same_way(changes):
         assert np.array_equal(getattr(one.flow, name), getattr(other.flow, name)), name
     assert np.array_equal(one.motion.position, other.motion.position)
     assert np.array_equal(one.jump_history, other.jump_history)
+    assert wing.measure(one) == Measurement.of(wing.observe(other))
