@@ -127,9 +127,16 @@ def fly(folder: Path) -> None:
                 raise RuntimeError('the simulator failed')
         finally:
             for process in (simulator, *listeners):
-                process.send_signal(signal.SIGINT)
-            for process in listeners:
-                process.wait(60.0)
+                end(process)
+
+
+def end(process: subprocess.Popen) -> None:
+    """Ask a process to end; kill one that does not."""
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(60.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
 
 
 def values(path: Path) -> Iterator[tuple[str, Any]]:

@@ -40,6 +40,15 @@ from dewing_sim.machine.signals import Stop
 
 SPIN = 0.2                      # s, longest time without a look at signals and conditions
 DOMAINS = range(1, 102)         # usable on every system without clashing with ephemeral ports
+CHILD = """
+import os, signal, sys, threading
+def follow():
+    os.read(0, 1)               # returns when the parent has ended
+    os.kill(os.getpid(), signal.SIGTERM)
+threading.Thread(target=follow, daemon=True).start()
+from {module} import main
+sys.exit(main())
+"""
 DOMAIN_PORT = 22119             # of the domain coordinator of ROS: lock by binding port + domain
 
 
@@ -190,16 +199,18 @@ def environment(domain: int, log_folder: str) -> dict[str, str]:
 
 def start_node(module: str, parameters: Mapping[str, Any], env: Mapping[str, str],
                arguments: Sequence[str] = (), **options) -> subprocess.Popen:
-    """Start ``module`` (with a `main`) as a process in a group of its own.
+    """Start ``module`` (with a `main`) as a process in a group of its own that ends with this one.
 
-    ``arguments`` are further ones of ROS, such as remappings; ``options`` are those of `Popen`.
+    However this process ends, killed even, the pipe to the other's standard input closes, and it
+    ends in order, as on SIGTERM. ``arguments`` are further ones of ROS, such as remappings;
+    ``options`` are those of `Popen`.
     """
-    code = f'import sys; from {module} import main; sys.exit(main())'
     arguments = ['--ros-args', *arguments]
     for name, value in parameters.items():
         arguments += ['-p', f'{name}:={_yaml_word(value)}']
-    return subprocess.Popen([sys.executable, '-c', code, *arguments], env=dict(env),
-                            start_new_session=True, **options)
+    return subprocess.Popen([sys.executable, '-c', CHILD.format(module=module), *arguments],
+                            env=dict(env), start_new_session=True, stdin=subprocess.PIPE,
+                            **options)
 
 
 def _yaml_word(value: Any) -> str:

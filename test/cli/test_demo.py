@@ -7,12 +7,11 @@ import os
 import signal
 import subprocess
 import sys
-import time
 import warnings
 
 import numpy as np
 import pytest
-from ros_processes import PATIENCE
+from started import PATIENCE, started, wait_until
 
 from dewing_cli.demo import results as demo_results
 from dewing_cli.demo.results import Run
@@ -60,7 +59,7 @@ def test_missing_measurements_count_as_lost():
 
 def start(folder, *options):
     env = os.environ | {'XDG_CACHE_HOME': str(folder / 'cache')}
-    return subprocess.Popen(
+    return started(
         [sys.executable, '-m', 'dewing_cli', 'demo', '--out', str(folder / 'demo'), *COARSE,
          *options], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
@@ -77,8 +76,8 @@ def assert_as_offline(folder, steps):
 
 @pytest.mark.slow
 def test_the_demo_leaves_bags_figure_and_metrics(tmp_path):
-    process = start(tmp_path, '--duration', '0.02', '--json', str(tmp_path / 'copy.json'))
-    said, complaint = process.communicate(timeout=PATIENCE)
+    with start(tmp_path, '--duration', '0.02', '--json', str(tmp_path / 'copy.json')) as process:
+        said, complaint = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, complaint
     assert 'mean camber change' in said and 'closed_loop.png' in said
     metrics = json.loads((tmp_path / 'demo' / 'metrics.json').read_text())
@@ -87,9 +86,9 @@ def test_the_demo_leaves_bags_figure_and_metrics(tmp_path):
     assert metrics['closed_loop']['v_min'] >= 0.0
     assert metrics['closed_loop']['camber_mean'] > 0.0 > metrics['open_loop']['camber_mean']
     assert (tmp_path / 'demo' / 'closed_loop.png').read_bytes().startswith(b'\x89PNG')
-    again = start(tmp_path)
-    assert again.wait(PATIENCE) == 2
-    assert 'exists; --force writes over it' in again.communicate()[1]
+    with start(tmp_path) as again:
+        complaint = again.communicate(timeout=PATIENCE)[1]
+    assert again.returncode == 2 and 'exists; --force writes over it' in complaint
     assert_as_offline(tmp_path / 'demo', 200)
 
 
@@ -103,14 +102,11 @@ def messages_in(recording):
 @pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupted_demo_keeps_what_it_recorded(tmp_path, number):
-    process = start(tmp_path, '--duration', '5.0')
     recording = tmp_path / 'demo' / 'open_loop.mcap'
-    deadline = time.monotonic() + PATIENCE
-    while not (recording.exists() and messages_in(recording) > 100):
-        assert process.poll() is None and time.monotonic() < deadline
-        time.sleep(0.2)
-    process.send_signal(number)
-    _, complaint = process.communicate(timeout=PATIENCE)
+    with start(tmp_path, '--duration', '5.0') as process:
+        wait_until(lambda: recording.exists() and messages_in(recording) > 100, process)
+        process.send_signal(number)
+        _, complaint = process.communicate(timeout=PATIENCE)
     assert process.returncode == 128 + number
     assert f'kept {recording} up to 0.' in complaint and complaint.endswith('interrupted\n')
     run = bag.series(recording, demo_results.MEASUREMENT)

@@ -4,20 +4,19 @@
 
 import os
 import random
-import subprocess
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from started import started, wait_until
 
 from dewing_cli import main as cli
 from dewing_sim.machine.signals import kill
 from dewing_sim.records.history import History
 
 MOMENTS = random.Random(14)         # s after there is something to keep
-PATIENCE = 300.0
 SMALL = ['--set', 'numerics.grid=fast', '--set', 'numerics.trim_time=0.1', '--quiet']
 OFTEN = """
 import sys
@@ -41,16 +40,10 @@ pytestmark = [pytest.mark.slow, pytest.mark.usefixtures('own_folder')]
 
 def killed(pattern, *arguments, code=OFTEN):
     """Kill the command at a random moment after a file of ``pattern`` has appeared."""
-    process = subprocess.Popen(
-        [sys.executable, '-c', code, *arguments], start_new_session=True,
-        env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
-    try:
-        deadline = time.monotonic() + PATIENCE
-        while not list(Path().glob(pattern)):
-            assert process.poll() is None and time.monotonic() < deadline
-            time.sleep(0.01)
+    with started([sys.executable, '-c', code, *arguments],
+                 env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)}) as process:
+        wait_until(lambda: list(Path().glob(pattern)), process)
         time.sleep(MOMENTS.uniform(0.0, 0.5))
-    finally:
         kill(process)
 
 

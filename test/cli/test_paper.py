@@ -12,13 +12,13 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 from identified_wing import identity, reduced_model
 from paper_runs import TINY, Sum
+from started import PATIENCE, started, wait_until
 
 from dewing_cli import main as cli
 from dewing_cli.commands import paper
@@ -325,14 +325,13 @@ def test_the_command_from_an_interrupt_to_the_report(tmp_path, monkeypatch, caps
     monkeypatch.setattr(plan, 'QUICK', TINY)
     out = tmp_path / 'out'
     arguments = ['paper', '--quick', '--out', str(out), '--quiet']
-    process = subprocess.Popen(
-        [sys.executable, '-c', TINY_COMMAND, *arguments], stderr=subprocess.PIPE, text=True,
-        env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
-    while not list(out.glob('runs/*.npz')) and process.poll() is None:
-        time.sleep(0.2)
-    process.send_signal(signal.SIGHUP)
-    assert process.wait(60) == 128 + signal.SIGHUP
-    kept, interrupted = process.stderr.read().splitlines()
+    with started([sys.executable, '-c', TINY_COMMAND, *arguments], stderr=subprocess.PIPE,
+                 text=True, env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)}) as process:
+        wait_until(lambda: list(out.glob('runs/*.npz')), process)
+        process.send_signal(signal.SIGHUP)
+        _, complaint = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 128 + signal.SIGHUP
+    kept, interrupted = complaint.splitlines()
     assert re.match(r'dewing: kept [1-9]\d* of \d+ runs in ', kept)
     assert interrupted == 'dewing: interrupted'
     assert not (out / paper.REPORT).exists()

@@ -7,13 +7,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
 import xarray
+from started import PATIENCE, started, wait_until
 
 from dewing_cli import main as cli
 from dewing_cli.sweep import sweep
@@ -36,7 +36,6 @@ COARSE = {'numerics.grid': 'fast', 'numerics.trim_time': 0.1, 'membrane.elements
 OPTIONS = [text for key, value in COARSE.items() for text in ('--set', f'{key}={value}')]
 OPTIONS += ['--duration', '0.003']
 VARY = ['--vary', f'{ANGLE}=2.0,4.0', '--vary', f'{LIMIT}=1250.0,1400.0']    # slack at 1300 V
-PATIENCE = 300.0
 
 
 pytestmark = pytest.mark.usefixtures('own_folder')
@@ -226,26 +225,18 @@ def test_the_status_is_1_if_no_point_succeeds(cluster, capsys):
 
 def start(*arguments):
     env = os.environ | {'OPENBLAS_NUM_THREADS': '1', 'NUMBA_NUM_THREADS': '1'}
-    return subprocess.Popen([sys.executable, '-m', 'dewing_cli', 'sweep', *OPTIONS,
-                             *arguments], env=env, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, text=True, start_new_session=True)
-
-
-def wait_for_the_first_point(process):
-    deadline = time.monotonic() + PATIENCE
-    while not Path('sweep.nc').exists():
-        assert process.poll() is None and time.monotonic() < deadline
-        time.sleep(0.1)
+    return started([sys.executable, '-m', 'dewing_cli', 'sweep', *OPTIONS, *arguments], env=env,
+                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_sweep_of_processes_is_interrupted_and_goes_on_elsewhere(cluster, number):
     command = ['--vary', 'numerics.trim_time=0.1,80.0', '--out', 'sweep.nc']
-    process = start(*command, '--jobs', '2')
-    wait_for_the_first_point(process)
-    os.killpg(process.pid, number)                  # as Ctrl-C on a terminal does
-    said, complaint = process.communicate(timeout=PATIENCE)
+    with start(*command, '--jobs', '2') as process:
+        wait_until(Path('sweep.nc').exists, process)
+        os.killpg(process.pid, number)              # as Ctrl-C on a terminal does
+        said, complaint = process.communicate(timeout=PATIENCE)
     assert process.returncode == 128 + number, complaint
     assert complaint == 'dewing: interrupted\n' and '1 missing, 1 done' in said
     first = xarray.load_dataset('sweep.nc')
@@ -260,13 +251,14 @@ def test_a_sweep_of_processes_is_interrupted_and_goes_on_elsewhere(cluster, numb
 
 @pytest.mark.slow
 def test_a_worker_that_is_killed_does_not_stop_the_sweep():
-    process = start('--vary', 'numerics.trim_time=0.1,50.0', '--jobs', '2', '--out', 'sweep.nc')
-    wait_for_the_first_point(process)
-    workers = [child for child in psutil.Process(process.pid).children()
-               if 'spawn_main' in ' '.join(child.cmdline())]
-    assert len(workers) == 2
-    for worker in workers:
-        worker.kill()
-    said, complaint = process.communicate(timeout=PATIENCE)
+    with start('--vary', 'numerics.trim_time=0.1,50.0', '--jobs', '2', '--out',
+               'sweep.nc') as process:
+        wait_until(Path('sweep.nc').exists, process)
+        workers = [child for child in psutil.Process(process.pid).children()
+                   if 'spawn_main' in ' '.join(child.cmdline())]
+        assert len(workers) == 2
+        for worker in workers:
+            worker.kill()
+        said, complaint = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, complaint
     assert xarray.load_dataset('sweep.nc').status.values.tolist() == [DONE, DONE]

@@ -153,7 +153,7 @@ def test_a_law_that_fails_in_flight_ends_the_controller_with_one_sentence(tmp_pa
         'v_squared, errors = memory', 'v_squared, errors = memory\n'
         '        1 / (measurement.time < 0.002)'))
     with graph(tmp_path) as ros:
-        ros.simulator(duration=0.1, subscribers=1, hold_timeout=2.0, command_timeout=0.5)
+        ros.simulator(duration=0.1, subscribers=1)
         assert ros.start('controller', {'kind': KIND}).wait(PATIENCE) == 1
         assert 'the control law failed at 0.002 s (ZeroDivisionError' in ros.said('controller')
         assert 'Traceback' not in ros.said('controller')

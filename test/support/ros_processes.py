@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulator, controller and recorder of a linear wing as processes over DDS, for the tests."""
 
-import time
 import warnings
 from contextlib import contextmanager
 
 import numpy as np
+import started
 from reduced_wing import first_mode
 
 from dewing_control.settings import ControllerSettings
@@ -21,7 +21,7 @@ from dewing_sim.ros import harness
 
 MODULES = dict(simulator='dewing_sim.ros.node', controller='dewing_control.node',
                recorder='dewing_sim.ros.recorder')
-PATIENCE = 300.0            # s, for a machine that is busy with other things
+PATIENCE = started.PATIENCE
 FAREWELL = 60.0             # s, for a process to end before it is killed
 
 
@@ -40,7 +40,7 @@ class Graph:
 
     def __init__(self, domain, folder, patient=False):
         """Let nobody be given up for not running if ``patient``."""
-        self.domain, self.folder, self.processes = domain, folder, []
+        self.domain, self.folder, self.processes, self.names = domain, folder, [], []
         folder.mkdir(exist_ok=True)
         self.env = harness.environment(domain, str(folder))
         if patient:
@@ -55,6 +55,7 @@ class Graph:
             MODULES[name], settings or {}, self.env,
             cwd=self.folder, stdout=log, stderr=log, **options)
         self.processes.append(process)
+        self.names.append(name)
         return process
 
     def simulator(self, **run):
@@ -68,6 +69,21 @@ class Graph:
     def recorder(self):
         self.start('recorder', {'output': self.folder / 'run.mcap'})
         return self.folder / 'run.mcap'
+
+    def wait_until(self, condition):
+        """Wait for ``condition()``; fail at once when a process has ended before it holds."""
+        started.wait_until(self.alive(condition))
+
+    def alive(self, condition):
+        """Return ``condition``, which fails at once when a process has ended before it holds."""
+        def check():
+            ended = [] if condition() else [
+                process for process in self.processes if process.poll() is not None]
+            assert not ended or condition(), '\n'.join(
+                [f'a process ended with status {ended[0].returncode}',
+                 *map(self.said, self.names)])
+            return condition()
+        return check
 
     def said(self, name):
         return (self.folder / f'{name}.txt').read_text()
@@ -86,13 +102,6 @@ def graph(folder, patient=False):
             yield result
         finally:
             result.stop()
-
-
-def wait_until(condition):
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, 'the condition did not come true in time'
-        time.sleep(0.05)
 
 
 def simulated_time(path):

@@ -5,7 +5,6 @@
 import os
 import subprocess
 import sys
-import time
 import warnings
 from functools import partial
 from pathlib import Path
@@ -13,6 +12,7 @@ from pathlib import Path
 import jobs_at_work as at_work
 import psutil
 import pytest
+from started import started, wait_until
 
 from dewing_sim.errors import BadInput, RunFailed, Slack
 from dewing_sim.machine import cluster as on_dask
@@ -164,17 +164,12 @@ def test_processes_end_with_a_parent_that_is_killed(tmp_path):
                'Workers(1)))\n')
     script = tmp_path / 'program.py'
     script.write_text(program)
-    parent = subprocess.Popen([sys.executable, str(script)], stderr=subprocess.DEVNULL,
-                              env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
-    deadline = time.monotonic() + PATIENCE
-    while not (tmp_path / 'pid').exists() or not (tmp_path / 'pid').read_text():
-        assert parent.poll() is None and time.monotonic() < deadline
-        time.sleep(0.05)
-    parent.kill()
-    parent.wait()
-    while psutil.pid_exists(int((tmp_path / 'pid').read_text())):
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
+    pid = tmp_path / 'pid'
+    with started([sys.executable, str(script)], stderr=subprocess.DEVNULL,
+                 env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)}) as parent:
+        wait_until(lambda: pid.exists() and pid.read_text(), parent)
+        parent.kill()
+        wait_until(lambda: not psutil.pid_exists(int(pid.read_text())))
 
 
 def test_nothing_to_do_starts_nothing():

@@ -5,8 +5,10 @@
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 
 import pytest
+from started import started
 
 from dewing_sim.machine.signals import ENDS, Interrupted, Stop, end, kill, status_of, undisturbed
 
@@ -18,11 +20,12 @@ DEAF = ('import signal\nfor each in signal.SIGINT, signal.SIGTERM:\n'
         f'    signal.signal(each, lambda *_: None)\n{WAIT}')
 
 
-def start(code):
-    process = subprocess.Popen([sys.executable, '-c', code], start_new_session=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    assert process.stdout.readline() == b'ready\n'
-    return process
+@contextmanager
+def ready(code):
+    with started([sys.executable, '-c', code], stdout=subprocess.PIPE,
+                 stderr=subprocess.DEVNULL) as process:
+        assert process.stdout.readline() == b'ready\n'
+        yield process
 
 
 @pytest.mark.parametrize('number', ENDS)
@@ -74,14 +77,14 @@ def test_a_hangup_that_nohup_ignores_stays_ignored():
 
 
 def test_a_stopped_process_is_continued_and_asked():
-    process = start(POLITE)
-    process.send_signal(signal.SIGSTOP)
-    assert end(process, PATIENCE) == -signal.SIGINT
-    assert end(process, PATIENCE) == -signal.SIGINT     # once more changes nothing
+    with ready(POLITE) as process:
+        process.send_signal(signal.SIGSTOP)
+        assert end(process, PATIENCE) == -signal.SIGINT
+        assert end(process, PATIENCE) == -signal.SIGINT     # once more changes nothing
 
 
 def test_a_deaf_process_is_killed_stopped_or_not():
-    processes = [start(DEAF) for _ in range(2)]
-    assert end(processes[0], 0.2) == -signal.SIGKILL
-    processes[1].send_signal(signal.SIGSTOP)
-    assert kill(processes[1]) == -signal.SIGKILL
+    with ready(DEAF) as one, ready(DEAF) as other:
+        assert end(one, 0.2) == -signal.SIGKILL
+        other.send_signal(signal.SIGSTOP)
+        assert kill(other) == -signal.SIGKILL

@@ -19,7 +19,6 @@ from ros_processes import (
     last_status,
     offline,
     simulated_time,
-    wait_until,
 )
 from sensor_msgs.msg import JointState
 
@@ -79,7 +78,7 @@ def test_unusable_stale_and_repeated_commands_of_another_node_change_nothing(bot
     path = ros.recorder()
     simulator = ros.simulator(duration=0.02, subscribers=3)
     rogue = session.add(Rogue)
-    session.spin_until(lambda: rogue.out.get_subscription_count() >= 2, PATIENCE)
+    session.spin_until(ros.alive(lambda: rogue.out.get_subscription_count() >= 2), PATIENCE)
     ros.controller()
     session.spin_until(lambda: simulator.poll() is not None, PATIENCE)
     assert simulator.returncode == 0
@@ -96,8 +95,9 @@ def test_two_controllers_are_reported_and_every_step_is_made_once(both):
     ros.controller()
     ros.controller()
     doctor = session.add(Doctor)
-    session.spin_until(lambda: '2 controllers: the first answer to a measurement counts'
-                       in doctor.sentences and int(doctor.values['stale']) > 0, PATIENCE)
+    session.spin_until(ros.alive(
+        lambda: '2 controllers: the first answer to a measurement counts' in doctor.sentences
+        and int(doctor.values['stale']) > 0), PATIENCE)
     assert end(simulator, PATIENCE) == 0
     end(ros.processes[0], PATIENCE)
     time = bag.series(path, '/dewing/measurement')['time']
@@ -129,8 +129,8 @@ def test_a_late_controller_is_waited_for(both):
     ros, session = both
     path, doctor = ros.recorder(), session.add(Doctor)
     simulator = ros.simulator(duration=0.01, subscribers=2)
-    session.spin_until(lambda: any('waiting for a controller' in said
-                                   for said in doctor.sentences), PATIENCE)
+    session.spin_until(ros.alive(lambda: any(
+        'waiting for a controller' in said for said in doctor.sentences)), PATIENCE)
     ros.controller()
     assert simulator.wait(PATIENCE) == 0
     assert_as_offline(path, 100)
@@ -141,7 +141,7 @@ def test_a_killed_simulator_leaves_a_readable_bag_and_a_state_to_go_on_from(tmp_
         path = ros.recorder()
         simulator = ros.simulator(subscribers=2, save_steps=100)
         ros.controller()
-        wait_until(lambda: simulated_time(path) > 0.05)
+        ros.wait_until(lambda: simulated_time(path) > 0.05)
         kill(simulator)
     recorded = bag.series(path, '/dewing/measurement')
     assert_as_offline(path, len(recorded['time']) - 1)
@@ -162,14 +162,15 @@ def test_a_recorder_that_does_not_run_holds_the_loop_up_and_loses_nothing(tmp_pa
         path, doctor = ros.recorder(), session.add(Doctor)
         simulator = ros.simulator(subscribers=2, hold_timeout=PATIENCE)
         ros.controller()
-        wait_until(lambda: simulated_time(path) > 0.001)
+        ros.wait_until(lambda: simulated_time(path) > 0.001)
         ros.processes[0].send_signal(signal.SIGSTOP)
         # whichever queue fills first, that of the measurements or that of the commands
-        session.spin_until(lambda: any('does not keep up' in said or 'no valid command' in said
-                                       for said in doctor.sentences), PATIENCE)
+        session.spin_until(ros.alive(lambda: any(
+            'does not keep up' in said or 'no valid command' in said
+            for said in doctor.sentences)), PATIENCE)
         held = int(doctor.values['steps'])
         ros.processes[0].send_signal(signal.SIGCONT)
-        session.spin_until(lambda: int(doctor.values['steps']) > held + 100, PATIENCE)
+        session.spin_until(ros.alive(lambda: int(doctor.values['steps']) > held + 100), PATIENCE)
         assert end(simulator, PATIENCE) == 0
         assert end(ros.processes[0], PATIENCE) == 0
     _, values = last_status(path)
@@ -185,10 +186,11 @@ def test_a_recorder_that_is_given_up_is_said_to_be_gone(tmp_path):
         ros.simulator(subscribers=2, hold_timeout=PATIENCE)
         ros.controller()
         # The controller answers once the recorder listens; not before may that be stopped.
-        session.spin_until(lambda: simulated_time(path) > 0.0, PATIENCE)
+        session.spin_until(ros.alive(lambda: simulated_time(path) > 0.0), PATIENCE)
         ros.processes[0].send_signal(signal.SIGSTOP)
-        session.spin_until(lambda: any('1 of 2 listeners of measurement are left' in said
-                                       for said in doctor.sentences), PATIENCE)
+        session.spin_until(ros.alive(lambda: any(
+            '1 of 2 listeners of measurement are left' in said for said in doctor.sentences)),
+            PATIENCE)
         ros.processes[0].send_signal(signal.SIGCONT)
 
 

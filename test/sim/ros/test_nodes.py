@@ -3,16 +3,22 @@
 """Simulator and controller as processes over DDS: lock-step, faults, ends."""
 
 import dataclasses
+import os
 import signal
+import sys
 
 import numpy as np
+import psutil
 import pytest
+from mcap.reader import make_reader
 from reduced_wing import first_mode
-from ros_processes import PATIENCE, graph, last_status, offline, simulated_time, wait_until
+from ros_processes import PATIENCE, graph, last_status, offline, simulated_time
+from started import started, wait_until
 
 from dewing_sim.linear import reduced
 from dewing_sim.machine.signals import kill
 from dewing_sim.records import bag
+from dewing_sim.ros import harness
 
 
 def run_closed_loop(folder, steps):
@@ -50,10 +56,10 @@ def test_ten_thousand_steps_lose_and_mismatch_none(tmp_path):
 def test_a_killed_controller_is_reported_and_the_state_saved(tmp_path):
     with graph(tmp_path) as ros:
         path = ros.recorder()
-        simulator = ros.simulator(subscribers=2, command_timeout=0.5, hold_timeout=1.0,
+        simulator = ros.simulator(subscribers=2, command_timeout=0.5, hold_timeout=4.0,
                                   delivery_timeout=5.0)
         controller = ros.start('controller')
-        wait_until(lambda: simulated_time(path) > 0.02)
+        ros.wait_until(lambda: simulated_time(path) > 0.02)
         kill(controller)
         assert simulator.wait(PATIENCE) == 1
     sentences = [status.message for _, _, message in bag.read(path, '/diagnostics')
@@ -71,7 +77,7 @@ def test_a_restarted_controller_carries_on_without_a_bump(tmp_path):
         path = ros.recorder()
         simulator = ros.simulator(subscribers=2, duration=0.3, delivery_timeout=5.0)
         controller = ros.controller()
-        wait_until(lambda: simulated_time(path) > 0.06)
+        ros.wait_until(lambda: simulated_time(path) > 0.06)
         kill(controller)
         ros.controller()
         assert simulator.wait(PATIENCE) == 0, ros.said('simulator')
@@ -88,12 +94,36 @@ def test_signals_end_every_process_cleanly(tmp_path, number):
         path = ros.recorder()
         ros.simulator(subscribers=2)
         ros.controller()
-        wait_until(lambda: simulated_time(path) > 0.01)
+        ros.wait_until(lambda: simulated_time(path) > 0.01)
         for process in reversed(ros.processes):
             process.send_signal(number)
             assert process.wait(PATIENCE) == 0
         assert 'Traceback' not in ros.said('simulator') + ros.said('controller')
     assert last_status(path)[0].message.startswith('interrupted at')
+
+
+PARENT = """
+import sys, time
+from pathlib import Path
+from dewing_sim.ros import harness
+node = harness.start_node('dewing_sim.ros.recorder', {'output': 'run.mcap'},
+                          harness.environment(int(sys.argv[1]), '.'))
+Path('pid').write_text(str(node.pid))
+time.sleep(1000)
+"""
+
+
+def test_a_node_ends_in_order_with_a_parent_that_is_killed(tmp_path):
+    environment = os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)}
+    with harness.reserved_domain() as domain, started(
+            [sys.executable, '-c', PARENT, str(domain)], cwd=tmp_path,
+            env=environment) as parent:
+        wait_until((tmp_path / 'run.mcap').exists, parent)
+        kill(parent)
+        node = int((tmp_path / 'pid').read_text())
+        wait_until(lambda: not psutil.pid_exists(node))
+    with open(tmp_path / 'run.mcap', 'rb') as file:
+        assert make_reader(file).get_summary() is not None      # it was closed
 
 
 @pytest.mark.parametrize('name, settings, sentence', [

@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 import pytest
-from ros_processes import PATIENCE, graph, simulated_time, wait_until
+from ros_processes import PATIENCE, graph, simulated_time
 
 from dewing_sim.errors import BadInput
 from dewing_sim.machine.signals import kill
@@ -107,7 +107,7 @@ def test_a_killed_recorder_leaves_a_readable_bag(tmp_path):
         path = ros.recorder()
         ros.simulator(subscribers=2, delivery_timeout=0.1)
         ros.controller()
-        wait_until(lambda: simulated_time(path) > 0.05)
+        ros.wait_until(lambda: simulated_time(path) > 0.05)
         time.sleep(random.Random(14).uniform(0.0, 0.5))
         kill(ros.processes[0])
     assert np.all(np.diff(bag.series(path, '/dewing/measurement')['time']) < 1.5e-4)
@@ -132,7 +132,7 @@ def test_hashes_and_qos_are_those_of_the_publishers(tmp_path):
                     known[topic] = info
             return len(known) == 2
 
-        session.spin_until(seen, PATIENCE)
+        session.spin_until(ros.alive(seen), PATIENCE)
         assert ros.processes[1].wait(PATIENCE) == 0
     with open(path, 'rb') as file:
         channels = {c.topic: c for c in make_reader(file).get_summary().channels.values()}

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Loops that make no progress say so, and go on by themselves where they can."""
 
+import re
+import signal
 import time
 
 import pytest
 from reduced_wing import first_mode
-from ros_processes import PATIENCE
+from ros_processes import PATIENCE, graph, simulated_time
 
 from dewing_control.node import ControllerNode
 from dewing_sim.linear import reduced
@@ -93,3 +95,17 @@ def test_a_simulator_that_was_suspended_does_not_blame_the_others(session, setti
     session.executor.add_node(controller)
     session.spin_until(lambda: simulator.exit_status is not None, PATIENCE)
     assert simulator.exit_status == 0 and simulator.reason.startswith('finished at 0.01 s')
+
+
+@pytest.mark.slow
+def test_a_listener_that_blocks_a_paced_run_ends_it_in_the_end(tmp_path):
+    with graph(tmp_path, patient=True) as ros:
+        path = ros.recorder()
+        simulator = ros.simulator(mode='free', subscribers=1, command_timeout=0.5,
+                                  hold_timeout=1.0, delivery_timeout=0.1)
+        ros.wait_until(lambda: simulated_time(path) > 0.001)
+        ros.processes[0].send_signal(signal.SIGSTOP)
+        assert simulator.wait(PATIENCE) == 1
+        said = ros.said('simulator')
+    assert 'a listener of measurement does not keep up: simulated time waits for it' in said
+    assert re.search(r'a listener of measurement does not keep up for [\d.]+ s of wall time', said)
