@@ -13,6 +13,7 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 from dewing_control.settings import ControllerSettings
+from dewing_control.state_messages import StateTopic
 from dewing_control.trial.closed_loop import controller, same_memory
 from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
@@ -51,6 +52,7 @@ class ControllerNode(Node):
             JointState, 'measurement', self._on_message, qos.LATEST, raw=True)
         self._measurements = codec.Reader('position')
         self._layout = codec.layout(messages.COMMANDED, 'effort')
+        self._state = StateTopic(self)
         self.create_service(SetBool, '~/enable', self._on_enable)
         self._attended = False                      # all listeners of command were there
         self._heard = False                         # a measurement came in the last second
@@ -75,6 +77,7 @@ class ControllerNode(Node):
     def _on_measurement(self, read: codec.Reading):
         """Answer; a measurement that comes before case and listeners will be sent again."""
         self._heard = True
+        self._state.begin()
         if self._law is None or self._absent():
             return
         if read.stamp != self._stamp:
@@ -88,6 +91,8 @@ class ControllerNode(Node):
             self._say_running()
         if not qos.publish(self._command, self._layout.encode(read.stamp, (self._v_squared,))):
             self.status.set(messages.WARN, 'a listener of command does not keep up')
+        self._state.publish(read, self.settings.reference.output, self.identity, self._law,
+                            self._memory, self._v_squared)
 
     def _absent(self) -> int:
         """Return how many listeners of command are waited for, none once all have been there."""

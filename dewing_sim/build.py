@@ -32,6 +32,8 @@ class Built:
     load: Callable[[str], Any]
     monitor: Callable[[Any], Monitor]
     caution: Callable[[Any], str]
+    incidence: Callable[[Any], float] | None = None     # of a state in rad; None: there is none
+    pitches: bool = False                               # whether that may change
 
 
 def build(settings: SimulatorSettings, case: Case, progress=None) -> Built:
@@ -65,7 +67,8 @@ def build_wing(case: Case, progress=None) -> Built:
 
     return Built(wing, rest, identity,
                  lambda path, state: checkpoint.save(path, state, wing.case), load,
-                 wing.monitor, wing.caution)
+                 wing.monitor, wing.caution, incidence=wing.incidence,
+                 pitches='motion' in wing.open_to)
 
 
 def build_reduced(model: str) -> Built:

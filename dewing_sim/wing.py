@@ -95,6 +95,10 @@ class Wing:
         after = self.couple(state, acting, self._coupling)
         return replace(after, clipped=clipped) if clipped else after
 
+    def incidence(self, state: State) -> float:
+        """Return the angle of the chord to the undisturbed stream in rad, nose up."""
+        return getattr(state.flow, 'incidence', self.fluid.alpha)
+
     @property
     def open_to(self) -> frozenset[str]:
         """What may disturb it from outside, see `inputs.outside`; the engine meets inflows."""

@@ -43,6 +43,7 @@ LONG = (
     "make test PYTEST_OPTIONS='test/sim/ros/test_examples.py'",
     'dewing material --case paper --out docs/images/material/paper --force',
     'dewing paper --out out/paper',
+    'dewing_simulator --ros-args -r __ns:=/wing1 &',
     'dewing_controller &', 'dask scheduler --port 8786 &',
 )
 # Commands within the text that `make long` executes, each in a folder of its own.

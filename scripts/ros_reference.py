@@ -24,6 +24,8 @@ from dewing_sysid.node import SysidNode
 PAGE = Path(__file__).parents[1] / 'docs' / 'ros-reference.md'
 # Only to start quickly; the page shows the values of the case `paper`.
 QUICK = {'numerics.grid': 'fast', 'numerics.trim_time': 0.1}
+# The transforms are there where ROS has tf2_msgs, which the wheels lack.
+OF_EVERY_NODE = ('/rosout', '/parameter_events', '/tf', '/tf_static')
 TYPES = {1: 'bool', 2: 'integer', 3: 'double', 4: 'string'}
 HEAD = """# ROS interface reference
 
@@ -57,7 +59,7 @@ def section(node: Node) -> Iterable[str]:
 
 def _topics(verb: str, endpoints: Iterable) -> Iterable[str]:
     found = sorted((e.topic_name, _type(e.msg_type), _quality(e.qos_profile)) for e in endpoints
-                   if e.topic_name not in ('/rosout', '/parameter_events'))
+                   if e.topic_name not in OF_EVERY_NODE)
     return _table([verb, 'type', 'quality of service'], found)
 
 

@@ -127,6 +127,7 @@ class Loop:
         self._node.question.ask()
         self._node.telemetry.publish(self.lockstep)
         self._node.inputs.publish()
+        self._node.transforms.publish(self.lockstep)
 
     def _say_state(self):
         self._node.status.set(messages.OK, 'paused' if self.paused else 'running')

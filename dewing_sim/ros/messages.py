@@ -100,6 +100,15 @@ def commanded(read: codec.Reading) -> float:
     return read.values[0]
 
 
+def outputs(outputs: Outputs) -> JointState:
+    """Return every number that the plant has (SI), by name, stamped with simulated time."""
+    known = schema(type(outputs))
+    names, values = known.given(outputs, known.scalars)
+    message = JointState(name=list(names[1:]), position=array('d', values[1:]))     # but time
+    message.header.stamp = to_stamp(round(outputs.time * 1.0e9))
+    return message
+
+
 def scalar(value: float) -> Float64:
     """Return a plain number to echo and plot."""
     return Float64(data=float(value))

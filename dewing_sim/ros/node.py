@@ -23,6 +23,7 @@ from dewing_sim.ros.services import Services
 from dewing_sim.ros.simulator_parameters import settings_of
 from dewing_sim.ros.status import Status
 from dewing_sim.ros.telemetry import Telemetry
+from dewing_sim.ros.transforms import Transforms
 from dewing_sim.ros.watch import Watch
 
 
@@ -57,6 +58,7 @@ class SimulatorNode(Node):
         self.telemetry = Telemetry(
             self, self.case, self.run, self.plant.dt, self.lockstep.outputs)
         self.inputs = InputTopics(self)
+        self.transforms = Transforms(self)
         # The last publisher: who listens to it, and so is waited for, knows of all others.
         self.question = Question(self, self.run.resend_period)
         self.loop = Loop(self)

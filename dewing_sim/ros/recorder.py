@@ -20,11 +20,12 @@ from dewing_sim import parameters
 from dewing_sim.parameters import text
 from dewing_sim.records import bag
 from dewing_sim.ros import given_parameters, harness, messages, qos
+from dewing_sim.ros.transforms import TFMessage
 
 DISCOVERY_PERIOD = 0.05     # s
 WRITE_PERIOD = 0.02         # s
 FLUSH_PERIOD = 0.5          # s
-COMMON = ('/clock', '/diagnostics')
+COMMON = ('/clock', '/diagnostics', *(('/tf', '/tf_static') if TFMessage else ()))
 DEFAULTS = dict(output='dewing.mcap')
 
 

@@ -38,10 +38,12 @@ class Telemetry:
             period = _period(rate, dt)
             return Channel(node.create_publisher(kind, topic, qos.every(period)), period, make)
 
-        self._channels = [channel(each.topic, messages.Float64, run.scalar_rate,
-                                  _scalar(each.name, outputs))
-                          for each in schema(type(outputs)).quantities
-                          if each.topic and getattr(outputs, each.name) is not None]
+        self._channels = [channel('outputs', messages.JointState, run.scalar_rate,
+                                  lambda now: messages.outputs(now.outputs))]
+        self._channels += [channel(each.topic, messages.Float64, run.scalar_rate,
+                                   _scalar(each.name, outputs))
+                           for each in schema(type(outputs)).quantities
+                           if each.topic and getattr(outputs, each.name) is not None]
         if _has(outputs, 'cl', 'cd', 'cm') and run.plant != 'reduced':
             self._channels.append(channel(
                 'loads', messages.WrenchStamped, run.scalar_rate,
