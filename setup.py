@@ -12,7 +12,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 SOURCE = Path(__file__).resolve().parent        # colcon may run a link to this file
-EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder')
+EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder', 'loop')
 ROS_WHEELS = ('; sys_platform == "linux" and platform_machine == "x86_64"'
               ' and python_version < "3.14"')
 
@@ -84,6 +84,7 @@ setup(
             'dewing_controller = dewing_control.node:main',
             'dewing_sysid = dewing_sysid.node:main',
             'dewing_recorder = dewing_sim.ros.recorder:main',
+            'dewing_loop = dewing_control.loop_node:main',
         ],
     },
     zip_safe=False,

@@ -99,9 +99,9 @@ class LockStep:
         self.plant_seconds += perf_counter() - began
 
     def _inputs(self, v_squared: float) -> Inputs:
-        if self.outside is None:
+        if self.outside is None or not self.outside.used:
             return Inputs(v_squared)
-        return self.outside.during(v_squared, self.stamp, self.time + self.plant.dt)
+        return self.outside.during(v_squared, self.stamp, self.outputs.time + self.plant.dt)
 
     def figures(self, wall: float) -> dict[str, float]:
         """Return counters and speeds of a run that has taken ``wall`` s."""

@@ -19,7 +19,7 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[1]
 INGREDIENTS = ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'scripts/environment.py')
-EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder')
+EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder', 'loop')
 SHARED = ('config', 'launch')           # folders of files that ROS looks for
 REASONS = {
     'system': 'ROS: the sourced system ROS is used, since AMENT_PREFIX_PATH is set and this '

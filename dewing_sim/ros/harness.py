@@ -131,14 +131,25 @@ class ClockWatch(Node):
 def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
     """Spin the node of this process until it ends or a signal comes; return the exit status.
 
-    The node may have ``exit_status`` (None while it runs) and ``reason``, and must have
-    ``interrupt()``, which is called on SIGINT, SIGTERM and SIGHUP while ROS still works. Bad
-    parameters give one sentence on standard error and status 2, failures status 1.
+    The node may have ``exit_status`` (None while it runs) and ``reason``, and ``interrupt()``,
+    which is called on SIGINT, SIGTERM and SIGHUP while ROS still works. Bad parameters give one
+    sentence on standard error and status 2, failures status 1.
+    """
+    return run(lambda: [make], args)
+
+
+def run(find: Callable[[], Sequence[Callable[[], Node]]],
+        args: Sequence[str] | None = None) -> int:
+    """Spin the nodes that ``find()`` says how to make, in one executor; see `main`.
+
+    The end of the first is that of all, and its status is returned. Another that ends sooner is
+    taken out, as if its process had ended.
     """
     try:
         with Stop() as stop:
+            makes = find()
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-            return _spin(make(), stop)
+            return _spin([make() for make in makes], stop)
     except (DewingError, OSError, RuntimeError) as error:
         print('dewing:', ' '.join(str(error).split()), file=sys.stderr)
         return 2 if isinstance(error, BadInput) or not rclpy.ok() else 1
@@ -148,19 +159,34 @@ def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
         rclpy.try_shutdown()
 
 
-def _spin(node: Node, stop: Stop) -> int:
-    executor = executor_of()
-    executor.add_node(node)
+def _spin(nodes: list[Node], stop: Stop) -> int:
+    executor, (first, *others) = executor_of(), nodes
+    for node in nodes:
+        executor.add_node(node)
     stop.orderly = True
     try:
         with garbage.Deferred() as collector:
-            while not stop.asked and getattr(node, 'exit_status', None) is None:
+            while not stop.asked and _status(first) is None:
                 executor.spin_once(timeout_sec=SPIN)
                 collector.look(monotonic())
-        node.interrupt()
+                for node in [each for each in others if _status(each) is not None]:
+                    _report_failure(node)
+                    others.remove(node)
+                    executor.remove_node(node)
+                    node.destroy_node()
+        for node in (first, *others):
+            getattr(node, 'interrupt', lambda: None)()
     finally:
         executor.shutdown()
-    status = getattr(node, 'exit_status', None) or 0
+    return _report_failure(first)
+
+
+def _status(node: Node) -> int | None:
+    return getattr(node, 'exit_status', None)
+
+
+def _report_failure(node: Node) -> int:
+    status = _status(node) or 0
     if status:
         print('dewing:', node.reason, file=sys.stderr)
     return status

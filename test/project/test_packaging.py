@@ -18,7 +18,7 @@ import setuptools
 
 PROJECT = Path(__file__).parents[2]
 PACKAGE = ElementTree.parse(PROJECT / 'package.xml').getroot()
-EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder')
+EXECUTABLES = ('simulator', 'controller', 'sysid', 'recorder', 'loop')
 
 
 @pytest.fixture(scope='module')

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulator, controller and recorder of a linear wing as processes over DDS, for the tests."""
 
+import os
 import warnings
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import started
@@ -20,7 +22,7 @@ from dewing_sim.records import bag
 from dewing_sim.ros import harness
 
 MODULES = dict(simulator='dewing_sim.ros.node', controller='dewing_control.node',
-               recorder='dewing_sim.ros.recorder')
+               recorder='dewing_sim.ros.recorder', loop='dewing_control.loop_node')
 PATIENCE = started.PATIENCE
 FAREWELL = 60.0             # s, for a process to end before it is killed
 
@@ -43,6 +45,7 @@ class Graph:
         self.domain, self.folder, self.processes, self.names = domain, folder, [], []
         folder.mkdir(exist_ok=True)
         self.env = harness.environment(domain, str(folder))
+        self.env['PYTHONPATH'] += os.pathsep + str(Path(__file__).parent)    # plants and nodes
         if patient:
             (folder / 'patient.xml').write_text(PATIENT)
             self.env['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(folder / 'patient.xml')
