@@ -90,15 +90,24 @@ def load(name: str, schema: type[Section] = Case, changes: Mapping[str, Any] | N
          ) -> Section:
     """Load a shipped configuration or a ROS-format YAML file into ``schema``.
 
-    ``changes`` maps dotted names to values and is applied before checking.
+    Of several for one node a word is enough: ``realtime`` among controllers is
+    ``config/controller_realtime.yaml``. ``changes`` maps dotted names to values and is applied
+    before checking.
     """
-    path = config_file(name)
+    path = config_file(_named_for(getattr(schema, 'ros_node', ''), name))
     try:
         text = path.read_text(encoding='utf-8')
     except (OSError, UnicodeDecodeError) as error:
         raise BadInput(f'{path}: cannot be read ({_one_line(error)})') from None
     section = from_yaml(text, schema, str(path))
     return replace(section, changes) if changes else section
+
+
+def _named_for(node: str, name: str) -> str:
+    """Return the full name of a shipped configuration for ``node``, if there is such a one."""
+    full = f'{node}_{name}'
+    there = name.isidentifier() and (_config_folder() / f'{full}.yaml').is_file()
+    return full if there else name
 
 
 def from_yaml(text: str, schema: type[Section] = Case, origin: str = 'YAML') -> Section:

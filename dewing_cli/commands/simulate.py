@@ -25,6 +25,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                          help='constant voltage (default: that of the case)')
     command.add_argument('--controller', metavar='NAME|FILE',
                          help='close the loop with the controller of a YAML file')
+    late = parser.add_argument_group('late commands')
+    late.add_argument('--delay', type=int, default=0, metavar='STEPS',
+                      help='obey the controller so many steps late (default: 0)')
+    late.add_argument('--jitter', type=float, default=0.0, metavar='SHARE',
+                      help='share of its commands that comes a step later still (default: 0)')
     options.add_numerics(parser, 's')
     parser.add_argument('--skip', type=float, metavar='S',
                         help='leave out the first S seconds of the averages (default: half)')
@@ -74,6 +79,8 @@ def _check(arguments: argparse.Namespace) -> tuple[Case, Any, int]:
         from dewing_control.settings import ControllerSettings
         from dewing_sim import parameters
         settings = parameters.load(arguments.controller, ControllerSettings)
+    options.within('--delay', arguments.delay, 0, 1000, 'steps')
+    options.within('--jitter', arguments.jitter, 0.0, 1.0, '')
     steps = options.steps_of(arguments.duration, case.numerics.time_step, 's')
     options.within('--every', arguments.every, 1, 1_000_000, 'steps')
     options.check_skip(arguments.skip, steps, case.numerics.time_step, 's')
@@ -124,7 +131,9 @@ def _prepare(case: Case, arguments: argparse.Namespace, settings: Any, steps: in
     wing, rest = built.plant, built.rest
     if settings:
         from dewing_control.trial.closed_loop import closed_loop, controller
-        run = closed_loop(wing, rest, controller(settings, built.identity), steps)
+        from dewing_control.trial.late import late
+        made = late(controller(settings, built.identity), arguments.delay, arguments.jitter)
+        run = closed_loop(wing, rest, made, steps)
     else:
         voltage = case.actuation.voltage if arguments.voltage is None else arguments.voltage
         run = rollout(wing, rest, lambda _: Inputs(voltage**2), steps)

@@ -16,6 +16,7 @@ from dewing_cli.progress import bar
 from dewing_control.tuning.bounds import Bounds
 from dewing_sim.files import new_file
 
+TIMING = {'period': 'period_steps', 'delay': 'delay_steps'}    # options, of the command
 FILES = ('controller.yaml', 'model.npz', 'metrics.json', 'bode.png', 'nyquist.png',
          'response.png')
 
@@ -31,6 +32,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                        help='control law: its kind, or package.module:Name of your own')
     group.add_argument('--model', metavar='FILE',
                        help='npz of the identified model (default: identify)')
+    for name, meaning in (('period', 'steps of the plant in one control period'),
+                          ('delay', 'steps by which V^2 takes effect late')):
+        group.add_argument(f'--{name}', type=int, metavar='STEPS',
+                           help=f'{meaning} (default: as in the settings)')
     for name, default, help in (
             ('ms', Bounds.sensitivity, 'largest peak of the sensitivity'),
             ('saturation', Bounds.saturation, 'largest share of the time with V^2 at zero'),
@@ -84,6 +89,8 @@ def _check(arguments: argparse.Namespace) -> tuple[Any, Any]:
     from dewing_sim import parameters
     options.load_case(arguments)
     changes = {'kind': arguments.kind} if arguments.kind else {}
+    changes |= {f'command.{field}': getattr(arguments, name) for name, field in TIMING.items()
+                if getattr(arguments, name) is not None}
     settings = parameters.load(arguments.settings, ControllerSettings, changes)
     ranges_of(settings.kind)
     options.within('--duration', arguments.duration, 0.01, 100.0, 's')
@@ -125,7 +132,9 @@ def _verify(arguments, built, model, design, judged) -> dict[str, Any]:
                                                   run.dt))):
         with new_file(folder / f'{name}.png', arguments.force) as file:
             figure.savefig(file, format='png', dpi=120)
-    return {'kind': judged.settings.kind, 'gains': _gains(judged.settings), **judged.report(),
+    timing = {name: getattr(judged.settings.command, name) for name in TIMING.values()}
+    return {'kind': judged.settings.kind, **timing, 'gains': _gains(judged.settings),
+            **judged.report(),
             'wing': wing,
             'wing_minus_model': verification.difference(run.camber, camber, run.dt)}
 

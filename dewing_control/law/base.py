@@ -33,10 +33,18 @@ class Command:
 
     voltage_limit: float = real('V', 'largest voltage the controller asks for', 0.0, 1.0e5)
     period_steps: int = count('steps of the plant in one control period', 1, 100000)
+    delay_steps: int = count(
+        'steps of the plant by which V^2 takes effect late, as the design expects it; 0: the '
+        'step after the measurement', 0, 1000, default=0)
     hold_steps: int = count(
         'unusable measurements in a row answered with the last V^2, zero afterwards', 0, 1000000)
     subscribers: int = count(
         'listeners to command to wait for before the first answer', 0, 100, default=1)
+
+    @property
+    def delay_periods(self) -> int:
+        """Return the delay in control periods, the next whole number."""
+        return -(-self.delay_steps // self.period_steps)
 
 
 @dataclass(frozen=True)
@@ -108,7 +116,7 @@ class Law(ABC):
     def compensator(self) -> Any:
         """Return the law without saturation, from r - a to V^2/V_L^2, for tuning.
 
-        It is a `Matrices` or a `control.StateSpace`.
+        It is a `Matrices` or a `control.StateSpace`, without the delay of its output.
         """
         raise BadInput(f'{type(self).__name__} has no compensator, which tuning needs')
 

@@ -9,6 +9,10 @@ the camber at r, and takes off the load that the observer sees:
 
 The observer is told the w that was applied after saturation, so there is nothing to wind up; the
 drifting load gives integral action. V^2/V_L^2 = w/a undoes the bilinear action of V^2.
+
+Commands that take effect n periods late are remembered until they do. The observer predicts the
+state and the load n periods ahead under them, and the law acts on what it predicts, with the same
+K: for a pure delay of the input that is the optimum (certainty equivalence).
 """
 
 from dataclasses import dataclass
@@ -44,7 +48,18 @@ class Memory(NamedTuple):
 
     reference: float | None
     z: np.ndarray | None            # predicted state of the observer
-    command: float                  # V^2/V_L^2 in force
+    command: float                  # V^2/V_L^2, the last
+    pending: tuple[float, ...] = ()     # those that have yet to take effect, oldest first
+
+
+class Sight(NamedTuple):
+    """What is known at a measurement; ``ahead`` is when the next command takes effect."""
+
+    reference: float                # ramped
+    z: np.ndarray                   # corrected state of the observer
+    scale: float                    # the camber in w = V^2 camber
+    ahead: np.ndarray               # z then, without a delay now
+    scale_ahead: float              # the camber then
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +84,7 @@ class Lqg(Law):
     camber_reference: float         # a_ref in m
     v_squared_reference: float      # V_L^2
     v_squared_max: float
+    delay: int = 0                  # periods by which V^2 takes effect late
 
     @classmethod
     def of(cls, settings: Settings, identity: Identity, model: Design) -> 'Lqg':
@@ -80,20 +96,21 @@ class Lqg(Law):
         return cls(observer, regulator(model, settings.lqg.control_weight)[0],
                    reference.output, reference.target, reference.rate,
                    identity.passive(reference.output), identity.v_squared_slack,
-                   min(command.voltage_limit**2, identity.v_squared_max))
+                   min(command.voltage_limit**2, identity.v_squared_max),
+                   delay=command.delay_periods)
 
     def start(self, v_squared: float = 0.0) -> Memory:
         """Return the memory of a controller that takes over, without a bump, at ``v_squared``."""
-        return Memory(None, None, v_squared / self.v_squared_reference)
+        command = v_squared / self.v_squared_reference
+        return Memory(None, None, command, (command,) * self.delay)
 
     def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
         """Return the next memory and V^2, which is never negative nor above the limit."""
-        reference, z, scale = self.observe(memory, measurement)
-        return self.command(reference, z, scale, self.wanted(z, reference))
+        sight = self.observe(memory, measurement)
+        return self.command(memory, sight, self.wanted(sight.ahead, sight.reference))
 
-    def observe(self, memory: Memory, measurement: Measurement,
-                ) -> tuple[float, np.ndarray, float]:
-        """Return the ramped reference, the corrected state, and the camber in w = V^2 camber."""
+    def observe(self, memory: Memory, measurement: Measurement) -> Sight:
+        """Return what is known at a measurement, and foreseen of the next command's effect."""
         camber = getattr(measurement, self.output) / self.camber_reference
         reference = ramp(memory.reference, camber, self.target,
                          self.rate * self.observer.design.dt)
@@ -101,14 +118,21 @@ class Lqg(Law):
         z = memory.z
         if z is None:
             z = self.observer.begin(camber, memory.command * scale)
-        return reference, self.observer.correct(z, camber), scale
+        z = self.observer.correct(z, camber)
+        ahead, scale_ahead = z, scale
+        for command in memory.pending:
+            ahead = self.observer.predict(ahead, command * scale_ahead)
+            scale_ahead = max(1.0 + float(self.observer.outlet @ ahead), LEAST_CAMBER)
+        return Sight(reference, z, scale, ahead, scale_ahead)
 
-    def command(self, reference: float, z: np.ndarray, scale: float, wanted: float,
-                ) -> tuple[Memory, float]:
+    def command(self, memory: Memory, sight: Sight, wanted: float) -> tuple[Memory, float]:
         """Return the next memory and V^2 for a ``wanted`` w, within the limits of V^2."""
-        command = min(max(wanted / scale, 0.0), self.v_squared_max / self.v_squared_reference)
+        command = min(max(wanted / sight.scale_ahead, 0.0),
+                      self.v_squared_max / self.v_squared_reference)
         v_squared = min(command * self.v_squared_reference, self.v_squared_max)
-        return Memory(reference, self.observer.predict(z, command * scale), command), v_squared
+        acting, *pending = *memory.pending, command
+        z = self.observer.predict(sight.z, acting * sight.scale)
+        return Memory(sight.reference, z, command, tuple(pending)), v_squared
 
     @cached_property
     def gain(self) -> np.ndarray:
@@ -129,12 +153,22 @@ class Lqg(Law):
         return model.operating_input + held * self.hold - float(self.gain @ z)
 
     def compensator(self) -> Matrices:
-        """Return the law without saturation, from r - a to w."""
-        observer, gain = self.observer, self.gain
-        corrected = np.eye(gain.size) - np.outer(observer.gain, observer.outlet)
-        advance = observer.transition - np.outer(observer.inlet, gain)
-        return Matrices.siso(advance @ corrected, -advance @ observer.gain, -gain @ corrected,
-                             float(gain @ observer.gain))
+        """Return the law without saturation, from r - a to w; its states are z and pending w."""
+        observer, order, delay = self.observer, self.gain.size, self.delay
+        corrected = np.eye(order) - np.outer(observer.gain, observer.outlet)
+        line = np.eye(order + delay)[order:]            # rows that pick each w of the line
+        now = np.hstack([corrected, np.zeros((order, delay))])      # z, from z and the line
+        fresh = -observer.gain                                      # and from the error
+        ahead, ahead_fresh = now, fresh
+        for w in line:
+            ahead = observer.transition @ ahead + np.outer(observer.inlet, w)
+            ahead_fresh = observer.transition @ ahead_fresh
+        wanted, direct = -self.gain @ ahead, -float(self.gain @ ahead_fresh)
+        acting, *rest = *line, wanted                   # what acts now, what is remembered
+        inlets = [0.0] * delay + [direct]
+        a = np.vstack([observer.transition @ now + np.outer(observer.inlet, acting), *rest])
+        b = np.concatenate([observer.transition @ fresh + observer.inlet * inlets[0], inlets[1:]])
+        return Matrices.siso(a, b, wanted, direct)
 
 
 def regulator(model: Design, control_weight: float) -> tuple[np.ndarray, np.ndarray]:

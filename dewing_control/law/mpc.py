@@ -159,7 +159,8 @@ class Mpc(Law):
     def step(self, memory: Memory, measurement: Measurement) -> tuple[Memory, float]:
         """Return the next memory and V^2, which is never negative nor above the limit."""
         base, bound = self.base, self.v_squared_max / self.base.v_squared_reference
-        reference, z, scale = base.observe(memory.base, measurement)
+        sight = base.observe(memory.base, measurement)
+        reference, z, scale = sight.reference, sight.ahead, sight.scale_ahead
         w_max = scale * base.v_squared_max / base.v_squared_reference
         applied = memory.base.command * scale
         falling = memory.falling or memory.base.command > bound
@@ -167,7 +168,7 @@ class Mpc(Law):
             applied = min(applied, w_max)
         w, primal, dual = self._solve(memory, z, self.govern(z, reference, w_max), applied, w_max)
         falling = falling and base.wanted(z, reference) >= w_max
-        held, v_squared = base.command(reference, z, scale, w_max if falling else w)
+        held, v_squared = base.command(memory.base, sight, w_max if falling else w)
         return Memory(held, primal, dual, falling), v_squared
 
     def govern(self, z: np.ndarray, reference: float, w_max: float) -> float:

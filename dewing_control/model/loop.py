@@ -99,6 +99,22 @@ class Loop:
                 float(min(abs(phase), 180.0)))
 
     @cached_property
+    def delay_margin(self) -> float:
+        """Delay in s, on top of that in the loop, that makes a stable loop unstable.
+
+        The least phase over angular frequency of all points with |L| = 1; infinite without any.
+        """
+        size = np.log(np.abs(self.gain))
+        at = np.flatnonzero(size[:-1] * size[1:] < 0.0)
+        if not at.size:
+            return np.inf
+        share = size[at] / (size[at] - size[at + 1])
+        turn = np.angle(self.gain[at + 1] / self.gain[at])
+        phase = np.angle(self.gain[at]) + share * turn + np.pi      # to be lost until L = -1
+        frequency = self.frequency[at] + share * np.diff(self.frequency)[at]
+        return float(np.min(phase % (2.0 * np.pi) / (2.0 * np.pi * frequency)))
+
+    @cached_property
     def disk_margins(self) -> tuple[float, float]:
         """Gain (dB) and phase (deg) that may change at once, of `control.disk_margins`."""
         from control import disk_margins

@@ -33,7 +33,7 @@ def _form(settings: ControllerSettings) -> tuple:
     found = of_kind(settings.kind)
     model = settings.model if found.needs_model else ''
     return (settings.kind, model, settings.reference.output, settings.command.period_steps,
-            *(value_of(settings, name) for name in found.memory))
+            settings.command.delay_periods, *(value_of(settings, name) for name in found.memory))
 
 
 def closed_loop(plant: Plant, state: Any, loop: Controller, steps: int,

@@ -15,6 +15,7 @@ from dewing_control.law.registry import LAWS
 from dewing_control.law.supervisor import Controller
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial import closed_loop, trial
+from dewing_control.trial.late import late
 from dewing_control.trial.scenarios import SCENARIOS, Scenario
 from dewing_control.tuning.printed import printed_gains
 from dewing_sim import parameters
@@ -61,15 +62,20 @@ def controller(name: str, plan: Plan, scenario: Scenario, identity: Identity,
     changes = {
         'kind': KIND.get(name, name), 'reference.target': scenario.target,
         'reference.rate': scenario.rate, 'disturbance_model.frequency': scenario.told,
-        'command.period_steps': round(
-            plan.settings.command.period_steps * plan.nominal.dt / identity.dt)}
+        'command.delay_steps': scenario.delay,
+        'command.period_steps': max(1, round(
+            plan.settings.command.period_steps * plan.nominal.dt / identity.dt))}
     if name == 'pid_paper':
         printed = printed_gains(plan.nominal)
         changes |= {f'pid.{gain}': value for gain, value in printed.items()}
         changes['pid.tracking_time'] = printed['kp'] / printed['ki']
-    settings = parameters.replace(plan.settings, changes)
+    settings = plan.settings
+    if scenario.settings:
+        settings = dataclasses.replace(
+            parameters.load(scenario.settings, ControllerSettings), model=settings.model)
     known = dataclasses.replace(identity, v_squared_slack=plan.nominal.v_squared_slack)
-    return closed_loop.controller(settings, known)
+    made = closed_loop.controller(parameters.replace(settings, changes), known)
+    return late(made, scenario.delay, scenario.jitter)
 
 
 def run_scenario(plan: Plan, name: str, names: Sequence[str] = CONTROLLERS,

@@ -21,6 +21,9 @@ class Scenario:
     noise: float = 0.0                  # standard deviation, of the passive camber
     second: Disturbance | None = None
     case: str = ''                      # another shipped case
+    settings: str = ''                  # other shipped settings, of the PID and all others
+    delay: int = 0                      # steps by which commands take effect late, told
+    jitter: float = 0.0                 # share of them that comes a step later still
 
 
 def _tone(frequency: float) -> dict[str, Any]:
@@ -31,6 +34,12 @@ def _gust(speed: float) -> dict[str, Any]:
     """Return a vertical 1 - cos gust of 0.1 s, four chords long, near the end of a run."""
     return {'numerics.engine': 'conformal', 'gust.shape': 'one_minus_cosine',
             'gust.vertical': speed, 'gust.start': 0.22, 'gust.duration': 0.1}
+
+
+def _late(meaning: str, delay: int, jitter: float = 0.0) -> Scenario:
+    """Return Fig. 5 in steps of 5e-4 s with late commands."""
+    return Scenario(f'Fig. 5 in steps of 0.5 ms, {meaning}', FIG5, case='realtime',
+                    settings='controller_realtime', delay=delay, jitter=jitter)
 
 
 FIG5 = DISTURBANCES['fig5']
@@ -61,5 +70,12 @@ SCENARIOS = {
                        told=24.0, case='paper_alpha8'),
     'alpha8_high': Scenario('the same, target 1.90', target=1.90, rate=5.0, told=24.0,
                             case='paper_alpha8'),
+    'late0': _late('commands in time', 0),
+    'late1': _late('commands one step late', 1),
+    'late2': _late('commands two steps late', 2),
+    'jitter': _late('commands one step late, a tenth of them two', 1, 0.1),
+    'alpha8_late1': Scenario(
+        'shedding at 8 degrees in steps of 0.5 ms, commands one step late', told=24.0,
+        case='realtime_alpha8', settings='controller_realtime', delay=1),
 }
 QUICK = ('fig5', 'target_1', 'below', 'step')

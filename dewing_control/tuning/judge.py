@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a law does on the identified model: robustness, rejection, saturation, noise.
 
-All is of the linear loop, whose only delay is the one sampling time of the hold: the error after
-a unit step of the camber (of its reference or by a disturbance), the sensitivity to the
-disturbance of Fig. 5 and the share of the time in which that disturbance asks for a negative V^2
-at the target, and the noise gain, the root mean square of V^2/V_L^2 for a white noise of a/a_ref
-of one. Ms = max |1/(1 + L)| is taken at the tension of rest and at a lower one, because V^2
-lowers the tension and with it every frequency.
+All is of the linear loop, with the hold and the delay of the command that the settings state: the
+error after a unit step of the camber (of its reference or by a disturbance), the sensitivity to
+the disturbance of Fig. 5 and the share of the time in which that disturbance asks for a negative
+V^2 at the target, and the noise gain, the root mean square of V^2/V_L^2 for a white noise of
+a/a_ref of one. Ms = max |1/(1 + L)| is taken at the tension of rest and at a lower one, because
+V^2 lowers the tension and with it every frequency.
 """
 
 import math
@@ -27,6 +27,7 @@ STEP_TIME = 0.05            # s
 FREQUENCY = 10.0            # Hz, of the disturbance
 LOAD = 0.05                 # a_ref, its amplitude
 LARGEST_MARGIN = 100.0      # dB, stated for a loop that no gain makes unstable
+LARGEST_DELAY = 1.0         # s, stated for a loop that no delay makes unstable
 NEGLIGIBLE = 1.0e-4         # a_ref: smaller amplitudes are not worth having
 
 
@@ -71,6 +72,8 @@ class Judged:
         return {
             'stable': True, 'ms_peak': self.peak, 'ms_at_rest': self.loop.peak,
             'gain_margin_db': worst('margins', 0), 'phase_margin_deg': worst('margins', 1),
+            'delay_margin_s': min(self.loop.delay_margin, self.strained.delay_margin,
+                                  LARGEST_DELAY),
             'disk_gain_margin_db': worst('disk_margins', 0),
             'disk_phase_margin_deg': worst('disk_margins', 1),
             'disturbance_rejection_10hz': abs(self.sensitivity),
@@ -85,7 +88,8 @@ def judge(settings: ControllerSettings, identity: Identity, model: Design, strai
     Raises `BadInput` if it cannot be designed, or has no usable compensator.
     """
     with refusing(settings.kind):
-        compensator = Matrices.of(law(settings, identity, model).compensator())
+        compensator = Matrices.of(law(settings, identity, model).compensator()).delayed(
+            settings.command.delay_periods)
         sensitivity = sensitivity_at(model, compensator, FREQUENCY)
         loops = [Loop.of(plant, compensator) for plant in (model, strained)]
         error = step_error(model, compensator) if loops[0].stable else np.array([math.inf])

@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from dewing_control.law.supervisor import Controller
 from dewing_control.model.design import Design
 from dewing_control.settings import ControllerSettings
 from dewing_control.trial import trial
 from dewing_control.trial.closed_loop import closed_loop, controller
+from dewing_control.trial.late import late
 from dewing_control.tuning.judge import FREQUENCY, LOAD
 from dewing_sim.build import Built
 from dewing_sim.identity import Identity
@@ -21,8 +23,9 @@ AVERAGED = 0.1              # s at the end of a run: one period of the disturban
 
 def on_wing(settings: ControllerSettings, built: Built, model: Design, duration: float,
             ) -> tuple[trial.Trial, dict[str, Any]]:
-    """Return run and figures of the law on the wing ``built``."""
-    run = trial.run(built.plant, built.rest, controller(settings, built.identity, model),
+    """Return run and figures of the law on the wing ``built``, obeyed as late as it expects."""
+    run = trial.run(built.plant, built.rest,
+                    _late(settings, controller(settings, built.identity, model)),
                     round(duration / built.plant.dt),
                     passive=built.identity.passive('camber_mean'))
     figures = trial.figures(run, settings.reference.target, built.identity.v_squared_max,
@@ -30,12 +33,17 @@ def on_wing(settings: ControllerSettings, built: Built, model: Design, duration:
     return run, figures
 
 
+def _late(settings: ControllerSettings, made: Controller) -> Controller:
+    return late(made, settings.command.delay_steps)
+
+
 def on_model(settings: ControllerSettings, identity: Identity, model: Model, design: Design,
              duration: float) -> np.ndarray:
     """Return the camber (n,) in a_ref of the law on the model disturbed as in Fig. 5."""
     plant = Reduced(model, disturbance=-LOAD * model.operating_outputs,
                     disturbance_frequency=FREQUENCY)
-    loop = closed_loop(plant, plant.rest(), controller(settings, identity, design),
+    loop = closed_loop(plant, plant.rest(),
+                       _late(settings, controller(settings, identity, design)),
                        round(duration / plant.dt))
     passive = model.operating_outputs[model.output_names.index(settings.reference.output)]
     return np.array([getattr(outputs, settings.reference.output) for _, outputs in loop]) / passive

@@ -37,6 +37,17 @@ class Matrices(NamedTuple):
         """Return those of ``system``, which may be a `control.StateSpace`."""
         return system if isinstance(system, cls) else cls(system.A, system.B, system.C, system.D)
 
+    def delayed(self, steps: int) -> 'Matrices':
+        """Return the system of one input and output whose output comes ``steps`` later."""
+        if not steps:
+            return self
+        order = self.order
+        a, b = np.zeros((order + steps,) * 2), np.zeros((order + steps, 1))
+        a[:order, :order], b[:order] = self.a, self.b
+        a[order, :order], b[order] = self.c, self.d     # the line that outputs pass along
+        a[order + 1:, order:-1] = np.eye(steps - 1)
+        return Matrices(a, b, np.eye(order + steps)[-1:], np.zeros((1, 1)))
+
     def to_control(self, dt: float, **names: Any) -> 'StateSpace':
         """Return a `control.StateSpace`; ``names`` as there: inputs, outputs, name."""
         from control import StateSpace

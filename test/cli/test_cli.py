@@ -105,6 +105,9 @@ def fails(capsys, arguments, status: int = 2) -> str:
     (['plate', '--alpha', '4', '--engine', 'panel'], '--engine panel is not known'),
     (['plate', '--alpha', '4', '--duration', '0'], '--duration 0 t* is out of range'),
     (['plate', '--alpha', '4', '--skip', '-1'], '--skip -1 is out of range'),
+    (['simulate', '--controller', 'late', '--delay', '-1'], '--delay -1 is out of range'),
+    (['simulate', '--controller', 'late', '--jitter', '2'], '--jitter 2 is out of range'),
+    (['tune', '--delay', '-1'], 'command.delay_steps = -1 is out of range'),
     (['demo', '--case', 'papier'], "'papier' is not a shipped configuration"),
     (['demo', '--controller', 'missing.yaml'], 'missing.yaml: no such file'),
     (['demo', '--duration', '0'], '--duration 0 s is out of range'),
@@ -127,6 +130,16 @@ def test_bad_input_ends_with_status_2_and_one_sentence(capsys, arguments, compla
 ])
 def test_a_bad_case_file_ends_with_status_2_and_one_sentence(capsys, old, new, complaint):
     assert complaint in fails(capsys, ['simulate', '--case', changed_case(old, new)])
+
+
+def test_a_controller_may_be_obeyed_late():
+    def late(*options):
+        assert cli.main(['simulate', '--case', 'realtime', '--set', 'numerics.trim_time=10.0',
+                         '--controller', 'realtime', '--duration', '0.03', '--json', 'late.json',
+                         '--force', '--quiet', *options]) == 0
+        return json.loads(Path('late.json').read_text())['v_max']
+    in_time = late()
+    assert late('--delay', '60') == 0.0 < in_time != late('--delay', '1') > 0.0
 
 
 @pytest.mark.parametrize('options, said', [

@@ -11,6 +11,7 @@ import yaml
 
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
+from dewing_sim.errors import BadInput
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.parameters import Case
 from dewing_sim.plant import SCALARS, rollout
@@ -19,13 +20,33 @@ from dewing_sysid.settings import Settings
 
 CONFIG = Path(__file__).parents[2] / 'config'
 FILES = sorted(path.stem for path in CONFIG.glob('*.yaml'))
-SCHEMAS = {'controller': ControllerSettings, 'simulator': SimulatorSettings, 'sysid': Settings}
+CONTROLLERS = [name for name in FILES if name.startswith('controller')]
+SCHEMAS = {'simulator': SimulatorSettings, 'sysid': Settings,
+           **dict.fromkeys(CONTROLLERS, ControllerSettings)}
 CASES = [name for name in FILES if name not in SCHEMAS]
 
 
 @pytest.mark.parametrize('name', FILES)
 def test_a_shipped_file_loads(name):
     parameters.load(name, SCHEMAS.get(name, Case))
+
+
+def test_a_word_is_enough_for_a_shipped_controller():
+    for word in ('late', 'realtime'):
+        assert (parameters.load(word, ControllerSettings)
+                == parameters.load(f'controller_{word}', ControllerSettings))
+    assert parameters.load('realtime') == parameters.load('realtime', Case)     # the case
+    with pytest.raises(BadInput, match="'calm' is not a shipped configuration"):
+        parameters.load('calm', ControllerSettings)
+
+
+@pytest.mark.parametrize('name', ['controller_late', 'controller_realtime'])
+def test_controllers_for_late_commands_differ_from_the_paper_s_in_the_law_alone(name):
+    ours, paper = (dict(leaf[:2] for leaf in parameters.leaves(
+        parameters.load(each, ControllerSettings))) for each in (name, 'controller'))
+    changed = {key for key in ours if ours[key] != paper[key]}
+    assert changed - {'kind', 'command.delay_steps'} == {
+        f'pid.{gain}' for gain in ('kp', 'ki', 'kd', 'derivative_filter', 'tracking_time')}
 
 
 def test_the_paper_s_cases_are_shipped():

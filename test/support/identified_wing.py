@@ -18,16 +18,18 @@ CAMBER = 1.8e-5                         # m, passive mean camber
 SLACK = 1300.0**2                       # V_L^2
 FREQUENCIES = (73.4, 171.3, 269.9)      # Hz
 DAMPING = (0.027, 0.005, 0.0045)
+COARSE = (0.024, 0.021, 0.085)          # the damping in steps of 5e-4 s, most of it numerical
 SHARES = (0.985, 0.005, 0.01)           # of the static gain a/a_ref per V^2/V_L^2, which is one
 
 
-def reduced_model(dt=1.0e-4, disturbance=0.0, frequency=10.0, stretch=1.0) -> Reduced:
+def reduced_model(dt=1.0e-4, disturbance=0.0, frequency=10.0, stretch=1.0, damping=DAMPING,
+                  ) -> Reduced:
     """Return the wing as a plant; ``disturbance`` in passive cambers, modes times ``stretch``."""
     a = np.zeros((7, 7))
-    for mode, (hertz, damping, share) in enumerate(zip(FREQUENCIES, DAMPING, SHARES)):
+    for mode, (hertz, ratio, share) in enumerate(zip(FREQUENCIES, damping, SHARES)):
         omega = 2.0 * np.pi * hertz * stretch
         a[2 * mode:2 * mode + 2, 2 * mode:2 * mode + 2] = [
-            [0.0, 1.0], [-omega**2, -2.0 * damping * omega]]
+            [0.0, 1.0], [-omega**2, -2.0 * ratio * omega]]
         a[2 * mode + 1, 6] = omega**2 * share
     steps = linalg.expm(dt * a)
     a, b = steps[:6, :6], steps[:6, 6]
