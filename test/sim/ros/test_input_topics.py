@@ -91,7 +91,7 @@ def test_what_was_asked_for_acts_in_its_step_and_stands_in_the_bag(tmp_path):
         weather, path = session.add(Weather), processes.recorder()
         simulator = processes.simulator(
             plant='gusty_plant:Plant', subscribers=2, duration=STEPS * DT)
-        session.spin_until(lambda: weather.heard, PATIENCE)
+        session.spin_until(processes.alive(lambda: weather.heard), PATIENCE)
         for stamp, topic, value, rate in PLAN:      # long before their time: nothing races
             weather.out[topic].publish(message_of(topic, stamp, value, rate))
         session.spin_until(lambda: all(
@@ -130,7 +130,7 @@ def test_a_bad_message_is_refused_with_one_sentence_and_counted(tmp_path, plant,
     with graph(tmp_path) as processes, harness.Session(processes.domain) as session:
         weather = session.add(Weather)
         processes.simulator(plant=plant, discovery_timeout=300.0)
-        session.spin_until(lambda: weather.heard and weather.values, PATIENCE)
+        session.spin_until(processes.alive(lambda: weather.heard and weather.values), PATIENCE)
         for count, ((topic, value, rate, _), said) in enumerate(zip(BAD, expected), start=1):
             message = message_of(topic, 0, value, rate)
             if len(value) == 3:
