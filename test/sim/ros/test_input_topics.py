@@ -91,7 +91,9 @@ def test_what_was_asked_for_acts_in_its_step_and_stands_in_the_bag(tmp_path):
         weather, path = session.add(Weather), processes.recorder()
         simulator = processes.simulator(
             plant='gusty_plant:Plant', subscribers=2, duration=STEPS * DT)
-        session.spin_until(processes.alive(lambda: weather.heard), PATIENCE)
+        # Simulator and recorder listen: what is published before nobody gets.
+        session.spin_until(processes.alive(lambda: weather.heard and all(
+            each.get_subscription_count() >= 2 for each in weather.out.values())), PATIENCE)
         for stamp, topic, value, rate in PLAN:      # long before their time: nothing races
             weather.out[topic].publish(message_of(topic, stamp, value, rate))
         session.spin_until(lambda: all(
@@ -130,7 +132,8 @@ def test_a_bad_message_is_refused_with_one_sentence_and_counted(tmp_path, plant,
     with graph(tmp_path) as processes, harness.Session(processes.domain) as session:
         weather = session.add(Weather)
         processes.simulator(plant=plant, discovery_timeout=300.0)
-        session.spin_until(processes.alive(lambda: weather.heard and weather.values), PATIENCE)
+        session.spin_until(processes.alive(lambda: weather.heard and weather.values and all(
+            each.get_subscription_count() >= 1 for each in weather.out.values())), PATIENCE)
         for count, ((topic, value, rate, _), said) in enumerate(zip(BAD, expected), start=1):
             message = message_of(topic, 0, value, rate)
             if len(value) == 3:
