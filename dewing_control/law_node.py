@@ -27,6 +27,7 @@ from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import Identity
 from dewing_sim.plant import Measurement
 from dewing_sim.ros import codec, harness, messages, qos
+from dewing_sim.ros.inbox import Inbox
 from dewing_sim.ros.status import Status
 
 WATCH_PERIOD = 1.0          # s, wall
@@ -62,8 +63,7 @@ class LawNode(Node, ABC):
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
         self._measurements = codec.Reader('position')
         self._layout = codec.layout(messages.COMMANDED, 'effort')
-        self._measurement = self.create_subscription(
-            JointState, 'measurement', self._on_measurement, qos.LATEST, raw=True)
+        self._inbox = Inbox(self, self._ready, self._on_measurement)
         self.create_timer(WATCH_PERIOD, self._watch,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -88,11 +88,14 @@ class LawNode(Node, ABC):
             self.answers = Answers(Supervisor(self, command.period_steps, command.hold_steps,
                                               self.limit))
             self.status.set(messages.OK, 'running')
+            self._inbox.look()
+
+    def _ready(self) -> bool:
+        """Return whether the plant is known and everybody listens to the answers."""
+        return self.answers is not None and not self._absent() and self.exit_status is None
 
     def _on_measurement(self, data: bytes):
-        """Answer; a measurement that comes before case and listeners will be sent again."""
-        if self.answers is None or self.exit_status is not None or self._absent():
-            return
+        """Answer."""
         try:
             read = self._measurements.read(data)
             v_squared = self.answers.to(read.stamp, messages.measured(read))
@@ -118,8 +121,7 @@ class LawNode(Node, ABC):
 
     def _watch(self):
         """Look for a measurement that nobody told of, and say what is waited for."""
-        for data in qos.waiting(self._measurement):
-            self._on_measurement(data)
+        self._inbox.look()
         if self.answers is not None and self._absent():
             self.status.set(messages.OK, f'waiting for {self._absent()} of '
                             f'{self.settings.command.subscribers} listeners of command')

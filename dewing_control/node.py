@@ -19,6 +19,7 @@ from dewing_sim import parameters
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.identity import Identity
 from dewing_sim.ros import codec, given_parameters, harness, messages, qos
+from dewing_sim.ros.inbox import Inbox
 from dewing_sim.ros.status import Status
 
 
@@ -48,8 +49,7 @@ class ControllerNode(Node):
         self.add_post_set_parameters_callback(self._declare_anew)
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
-        self._measurement = self.create_subscription(
-            JointState, 'measurement', self._on_message, qos.LATEST, raw=True)
+        self._inbox = Inbox(self, self._ready, self._on_message)
         self._measurements = codec.Reader('position')
         self._layout = codec.layout(messages.COMMANDED, 'effort')
         self._state = StateTopic(self)
@@ -65,6 +65,7 @@ class ControllerNode(Node):
                 self._law = controller(self.settings, identity)
                 self.identity, self._stamp = identity, -1
                 self._say_running()
+                self._inbox.look()
         except BadInput as error:
             self.status.set(messages.WARN, str(error))
 
@@ -75,11 +76,9 @@ class ControllerNode(Node):
             self.status.set(messages.WARN, str(error))
 
     def _on_measurement(self, read: codec.Reading):
-        """Answer; a measurement that comes before case and listeners will be sent again."""
+        """Answer."""
         self._heard = True
         self._state.begin()
-        if self._law is None or self._absent():
-            return
         if read.stamp != self._stamp:
             try:
                 self._decide(messages.measured(read), begin=read.stamp < self._stamp)
@@ -94,6 +93,10 @@ class ControllerNode(Node):
         self._state.publish(read, self.settings.reference.output, self.identity, self._law,
                             self._memory, self._v_squared)
 
+    def _ready(self) -> bool:
+        """Return whether there is a law and everybody listens to its answers."""
+        return self._law is not None and not self._absent() and self.exit_status is None
+
     def _absent(self) -> int:
         """Return how many listeners of command are waited for, none once all have been there."""
         if not self._attended:
@@ -104,8 +107,7 @@ class ControllerNode(Node):
 
     def _watch(self):
         """Look for a measurement that nobody told of, and say what is waited for."""
-        for data in qos.waiting(self._measurement):
-            self._on_message(data)
+        self._inbox.look()
         if self._law is not None and self._absent():
             self.status.set(messages.OK, f'waiting for {self._absent()} of '
                             f'{self.settings.command.subscribers} listeners of command')

@@ -24,6 +24,7 @@ PATIENCE = 30.0             # s, longer than the lease of a participant that die
 
 LOOP = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 LATEST = QoSProfile(depth=10)                   # of a listener that needs no old message
+DEEP = QoSProfile(depth=KEPT)                   # of one that may be busy while a bag is played
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 EVENTS = QoSProfile(depth=1000)                 # diagnostics
 
