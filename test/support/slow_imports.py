@@ -3,4 +3,5 @@
 """Modules that take long to import or need not be there: imported where they are used only."""
 
 SLOW = {'control', 'distributed', 'matplotlib', 'mcap', 'mcap_ros2', 'osqp', 'rich', 'rosbags',
-        'scipy.integrate', 'scipy.optimize', 'scipy.signal', 'scipy.stats', 'xarray'}
+        'scipy.integrate', 'scipy.optimize', 'scipy.signal', 'scipy.special', 'scipy.stats',
+        'xarray'}

@@ -21,7 +21,7 @@ near a place and kept, so that a wing that bends to and fro does not pay again.
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 from scipy.linalg import eigh
 
 from dewing_sim.fluid.conformal.geometry.mapping import Map

@@ -15,7 +15,7 @@ the two sides differs up to the very edge, a step in xi that would ring.
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
 from dewing_sim.fluid.conformal.fourier.modes import line_modes, line_values
 from dewing_sim.fluid.conformal.fourier.stockham import transform

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
 from dewing_sim.fluid.conformal.geometry.mapping import Map
 from dewing_sim.fluid.conformal.geometry.wall import WallGeometry, WallMotion
