@@ -43,7 +43,7 @@ LONG = (
     "make test PYTEST_OPTIONS='test/sim/ros/test_examples.py'",
     'dewing material --case paper --out docs/images/material/paper --force',
     'dewing paper --out out/paper',
-    'dewing_simulator --ros-args -r __ns:=/wing1 &',
+    'python -m dewing_sim.prepare', 'dewing_simulator --ros-args -r __ns:=/wing1 &',
     'dewing_controller &', 'dask scheduler --port 8786 &',
 )
 # Commands within the text that `make long` executes, each in a folder of its own.
@@ -53,6 +53,7 @@ LONG_IN_TEXT = (
     'python scripts/gallery.py', 'python scripts/parameter_table.py',
     'python scripts/ros_reference.py', 'python scripts/outputs_table.py',
     'python benchmarks/roundtrip.py', 'python benchmarks/soak.py',
+    'python benchmarks/cold_start.py', 'make kernels-wheel',
     'dewing plate --alpha 4', 'dewing simulate --case paper', 'dewing verify --quick',
     'dewing verify --out docs --force', 'dewing material --coupled',
     'dewing bench --presets standard --set membrane.element=solid --set membrane.elements=400',
