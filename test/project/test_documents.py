@@ -162,9 +162,10 @@ def test_ros_commands_name_executables_arguments_and_parameters_that_exist():
             assert (PROJECT / 'scripts' / executable).is_file(), page
         for parameter in re.findall(r' -p ([\w.]+):=', text):
             assert f'| `{parameter}` |' in reference, page
-        for line in re.findall(r'ros2 launch dewing dewing.launch.py(.*)', text):
+        for file, line in re.findall(r'ros2 launch dewing (\w+\.launch\.py)(.*)', text):
+            known = launch + (PROJECT / 'launch' / file).read_text()
             for argument in re.findall(r'(\w+):=', line):
-                assert f"('{argument}'," in launch, page
+                assert f"('{argument}'," in known, page
 
 
 # Links.

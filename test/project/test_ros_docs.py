@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """docs/ros.md, the layouts and the launch file say what the nodes do."""
 
-import ast
 import json
 import re
 import runpy
@@ -23,7 +22,6 @@ from dewing_sim.quantities import schema
 from dewing_sim.ros import harness, messages
 from dewing_sim.ros.node import SimulatorNode
 from dewing_sim.ros.telemetry import Telemetry
-from dewing_sim.settings import SimulatorSettings
 
 PROJECT = Path(__file__).parents[2]
 PAGE = (PROJECT / 'docs' / 'ros.md').read_text()
@@ -106,15 +104,3 @@ def test_rviz_and_foxglove_show_topics_that_exist():
     for name, index in re.findall(r'measurement\.position\[(\d)\].*?"label": "(\w+)"',
                                   json.dumps(foxglove)):
         assert int(name) < len(messages.MEASURED), index
-
-
-def test_the_launch_file_starts_executables_with_parameters_that_exist():
-    tree = ast.parse((PROJECT / 'launch' / 'dewing.launch.py').read_text())
-    words = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)]
-    given = {key.value for node in ast.walk(tree) if isinstance(node, ast.Dict)
-             for key in node.keys if isinstance(key, ast.Constant)}
-    known = {name for name, _ in parameters.fields(SimulatorSettings)} | {'output'}
-    assert given and given <= known
-    started = {keyword.value.value for node in ast.walk(tree) if isinstance(node, ast.Call)
-               for keyword in node.keywords if keyword.arg == 'executable'}
-    assert started == {'simulator', 'controller', 'recorder'} and 'dewing' in words
