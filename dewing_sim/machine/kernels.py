@@ -24,12 +24,14 @@ from dewing_sim.machine import content
 from dewing_sim.machine.kernel_cache import KernelCache
 
 PAGE = 512                  # doubles in 4 KB
+KERNELS: list[FunctionType] = []    # what `compiled` has compiled, for profiles
 
 
 def compiled(**options: Any) -> Callable[[FunctionType], Any]:
     """Return a decorator that compiles with ``options`` of numba, and keeps the result on disk."""
     def decorate(function: FunctionType) -> Any:
         made = numba.njit(**options)(function)
+        KERNELS.append(function)
         if isinstance(made, Dispatcher):        # not so under NUMBA_DISABLE_JIT
             made._cache = KernelCache(function, made.targetoptions)
         return made
