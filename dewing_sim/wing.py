@@ -91,7 +91,8 @@ class Wing:
         bearable = self.bearable(state.motion, state.v_squared)
         clipped = state.clipped + (v_squared > bearable)
         acting = self.sources.at((state.step + 1) * self.dt,
-                                 inputs._replace(v_squared=min(v_squared, bearable)))
+                                 Inputs(min(v_squared, bearable), inputs.wall_pressure,
+                                        inputs.inflow))
         after = self.couple(state, acting, self._coupling)
         return replace(after, clipped=clipped) if clipped else after
 

@@ -10,8 +10,7 @@ mass is inside the structural solution, so that the iteration converges at any m
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
+from dewing_sim.coupling.jump_history import remembered
 from dewing_sim.coupling.membrane_step import step_of, tables_of
 from dewing_sim.errors import NotConverged
 from dewing_sim.fluid.base import Fluid
@@ -23,8 +22,6 @@ from dewing_sim.structure.base import Moving
 from dewing_sim.structure.dynamics.step import Operator
 
 FLAT = 1.0e-5       # chords; shapes flatter than this are compared with it
-EXTRAPOLATION = tuple(map(np.array, (       # from one, two or three past values
-    (1.0,), (2.0, -1.0), (3.0, -3.0, 1.0))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +45,17 @@ class Coupling:
         """
         fluid, step = self.fluid, step_of(self.fluid, self.structure, self.operator, self.tables,
                                           now.motion, inputs)
-        wall = step.foresee(_extrapolated(now.jump_history))
+        wall = step.foresee(now.jump_history)
         for iteration in range(1, self.iterations + 1):
             prediction = fluid.predict(now.flow, wall, inputs.inflow)
             before, wall = wall, step.answer(prediction)
             residual = shape_change(wall.height, before.height)
             if residual <= self.tolerance:
-                still = prediction.jump + fluid.impedance @ (before.velocity - step.coasting)
                 return State(
                     now.step + 1, inputs.v_squared, fluid.correct(prediction, wall.velocity),
                     step.end(), iteration, residual,
-                    np.array([still, *now.jump_history[:len(EXTRAPOLATION) - 1]]))
+                    remembered(now.jump_history, prediction.jump, before.velocity,
+                               step.coasting, fluid.impedance))
         raise NotConverged(
             f'coupling: the shape still changes by {residual:.3g} of its deflection after '
             f'{self.iterations} iterations (tolerance {self.tolerance:.3g}); '
@@ -68,11 +65,6 @@ class Coupling:
     def tables(self) -> Resident | None:
         """What the compiled step of a membrane needs, None if there is none."""
         return tables_of(self.fluid, self.structure, self.operator)
-
-
-def _extrapolated(history: np.ndarray) -> np.ndarray | None:
-    """Return the jump (columns,) that the past ones (0 to 3, columns) foretell, if any."""
-    return EXTRAPOLATION[len(history) - 1] @ history if len(history) else None
 
 
 @checked_kernel

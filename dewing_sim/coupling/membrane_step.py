@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dewing_sim.coupling import transfer
+from dewing_sim.coupling.jump_history import extrapolated
 from dewing_sim.coupling.membrane_iteration import TAUT, corrected, curve_of
 from dewing_sim.coupling.structure_step import ACCURACY, FORESEEN, StructureStep, WallStep
-from dewing_sim.coupling.transfer import ColumnLoad
+from dewing_sim.coupling.transfer import ColumnLoad, coasting_velocity, wall
 from dewing_sim.fluid.base import Fluid, Prediction, Wall
 from dewing_sim.inputs.base import Inputs
 from dewing_sim.machine.kernels import kernel
@@ -70,25 +70,29 @@ class MembraneStep:
         self._uniform = 0.5 * inputs.wall_pressure      # q is half the unit of pressure
         self._held = tables, *motion.history, curve.middle, curve.half, curve.differences
         self._reached, self._lowest, self._velocity = None, -math.inf, None
+        self.coasting: np.ndarray | None = None         # known once a wall is foreseen
         self._general: StructureStep | None = None
-        self.coasting = transfer.coasting_velocity(
-            general[0].columns, motion.position, motion.velocity, motion.position_before,
-            motion.velocity_before)
 
-    def foresee(self, jump: np.ndarray | None) -> Wall:
-        """Return the wall under a guess of the jump."""
-        start = self._motion.predict(self._arguments[2].dt)
-        if jump is None:
-            return self._handed_over().foresee(None)
-        wall = self._wall(jump, self.coasting, FORESEEN, start)
-        return self._handed_over().foresee(jump) if wall is None else wall
+    def foresee(self, history: np.ndarray) -> Wall:
+        """Return the wall under the jump that past ones foretell."""
+        if len(history):
+            found, self.coasting = self._taken(*_foreseen(
+                *self._held, history, self._uniform, FORESEEN))
+            if found is not None:
+                return found
+        general = self._handed_over()
+        self.coasting = general.coasting
+        return general.foresee(history)
 
     def answer(self, prediction: Prediction) -> Wall:
         """Return the wall under the load of a flow."""
-        wall = None
         if self._general is None:
-            wall = self._wall(prediction.jump, prediction.wall.velocity, ACCURACY, self._reached)
-        return self._handed_over().answer(prediction) if wall is None else wall
+            found, _ = self._taken(*_reach(
+                *self._held, prediction.jump, prediction.wall.velocity, self._uniform, ACCURACY,
+                self._reached))
+            if found is not None:
+                return found
+        return self._handed_over().answer(prediction)
 
     def end(self) -> Motion:
         """Return the motion that ends at the last wall."""
@@ -100,15 +104,14 @@ class MembraneStep:
         return Motion(self._reached, self._velocity, motion.position, motion.velocity,
                       motion.memory)
 
-    def _wall(self, jump: np.ndarray, velocity: np.ndarray, accuracy: float, start: np.ndarray,
-              ) -> Wall | None:
-        """Return the wall under a load, None where the compiled step ends."""
-        is_found, position, lowest, rate, height, speed = _reach(
-            *self._held, jump, velocity, self._uniform, accuracy, start)
+    def _taken(self, is_found: bool, position: np.ndarray, lowest: float, rate: np.ndarray,
+               seen: tuple[np.ndarray, np.ndarray], reference: np.ndarray,
+               ) -> tuple[Wall | None, np.ndarray]:
+        """Return the wall that a kernel has found, None where the compiled step ends."""
         if not is_found:
-            return None
+            return None, reference
         self._reached, self._lowest, self._velocity = position, lowest, rate
-        return Wall(height, speed)
+        return Wall(*seen), reference
 
     def _handed_over(self) -> StructureStep:
         """Return the general step, at the place that this one has reached."""
@@ -122,7 +125,7 @@ class MembraneStep:
 @kernel
 def _reach(tables, now, before, velocity_now, velocity_before, middle, half, differences, jump,
            reference, uniform, accuracy, start):
-    """Return whether Newton's method ends, position, lowest tension, velocity and the wall.
+    """Return whether Newton's method ends, position, lowest tension, velocity, wall, reference.
 
     The lowest tension is that before the last correction, as in `Step.end`.
     """
@@ -143,5 +146,15 @@ def _reach(tables, now, before, velocity_now, velocity_before, middle, half, dif
         if is_found:
             break
     rate = combined(position, now, before, 3.0, -4.0, 1.0, 0.5 / t.dt)
-    height, speed = transfer.wall(t.columns, position, rate)
-    return is_found, position, lowest, rate, height, speed
+    return is_found, position, lowest, rate, wall(t.columns, position, rate), reference
+
+
+@kernel
+def _foreseen(tables, now, before, velocity_now, velocity_before, middle, half, differences,
+              history, uniform, accuracy):
+    """Return what `_reach` does, for the jump that a history foretells at a coasting wall."""
+    t = tables.value
+    coasting = coasting_velocity(t.columns, now, velocity_now, before, velocity_before)
+    start = combined(now, velocity_now, velocity_before, 1.0, 1.5 * t.dt, -0.5 * t.dt, 1.0)
+    return _reach(tables, now, before, velocity_now, velocity_before, middle, half, differences,
+                  extrapolated(history), coasting, uniform, accuracy, start)

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from dewing_sim.coupling import transfer
+from dewing_sim.coupling.jump_history import extrapolated
 from dewing_sim.coupling.membrane_iteration import iteration_of
 from dewing_sim.coupling.transfer import Load
 from dewing_sim.errors import RunFailed
@@ -29,10 +30,10 @@ class WallStep(Protocol):
 
     coasting: np.ndarray        # column velocities (columns,) of a step without acceleration
 
-    def foresee(self, jump: np.ndarray | None) -> Wall:
-        """Return the wall under a guess of the jump (columns,); only a guess, so it may fail.
+    def foresee(self, history: np.ndarray) -> Wall:
+        """Return the wall under the jump that past ones (0 to 3, columns) foretell.
 
-        The jump is that of a wall that coasts. Without one, the wall goes on as it moves.
+        It is only a guess, so it may fail; without a past, the wall goes on as it moves.
         """
 
     def answer(self, prediction: Prediction) -> Wall:
@@ -56,11 +57,11 @@ class StructureStep:
             motion.position, motion.velocity, motion.position_before, motion.velocity_before)))
         self._position = motion.predict(operator.dt)
 
-    def foresee(self, jump: np.ndarray | None) -> Wall:
-        """Return the wall under a guess of the jump."""
-        if jump is not None:
+    def foresee(self, history: np.ndarray) -> Wall:
+        """Return the wall under the jump that past ones foretell."""
+        if len(history):
             try:
-                self._reach(jump, self.coasting, FORESEEN)
+                self._reach(extrapolated(history), self.coasting, FORESEEN)
             except RunFailed:
                 pass            # the iterations will tell whether the step can be made
         return self._wall()

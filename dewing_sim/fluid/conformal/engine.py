@@ -18,12 +18,11 @@ from dewing_sim.errors import BadInput, DewingError, Diverged
 from dewing_sim.fluid.base import INFLOWS, Demand, Fluid, Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.conformal import diagnostics, noslip, step
 from dewing_sim.fluid.conformal.geometry.frame import Frame
-from dewing_sim.fluid.conformal.geometry.mapping import Line
 from dewing_sim.fluid.conformal.geometry.wall import Geometry
 from dewing_sim.fluid.conformal.grid import Grid
 from dewing_sim.fluid.conformal.noslip import EdgeTable
 from dewing_sim.fluid.conformal.presets import NAME, PRESETS
-from dewing_sim.fluid.conformal.pressure import added_mass, force
+from dewing_sim.fluid.conformal.pressure import added_mass, completed, force
 from dewing_sim.fluid.conformal.state import FlowState, Predicted
 from dewing_sim.fluid.field import FlowField
 from dewing_sim.fluid.inflow import Inflow
@@ -124,10 +123,10 @@ class Conformal(Fluid):
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
         """Complete the step: the wall velocity that the coupling found acts by the added mass."""
         p, wall = prediction.fields, prediction.wall
-        pressure, change = p.pressure, velocity - wall.velocity
-        if change.any():
-            pressure = pressure + self._added_mass(change, p.around.line)
-        now = p.before
+        line, now = p.around.line, p.before
+        pressure = completed(
+            p.pressure, velocity, wall.velocity, self.solver.wall_pressure.added_mass, self.dt,
+            line.angles, line.slope)
         return FlowState(
             w=p.w, q=p.q, psi=p.psi, w_before=now.w, q_before=now.q, psi_before=now.psi,
             shape=p.around.map.shape, edges=p.around.map.edges, shape_before=now.shape,
@@ -191,13 +190,10 @@ class Conformal(Fluid):
         flat = self.geometry.at_rest(self.geometry.mapping.flat())
         jumps = []
         for column in np.eye(len(self.columns) - 1):
-            jumps.append(flat.jump(self._added_mass(column, flat.line)))
+            jumps.append(flat.jump(added_mass(
+                self.solver.wall_pressure.added_mass, column, self.dt, flat.line.angles,
+                flat.line.slope)))
         return -np.array(jumps).T
-
-    def _added_mass(self, change: np.ndarray, line: Line) -> np.ndarray:
-        """Return the change of pressure (n,) by one of the wall velocity (columns,)."""
-        return added_mass(self.solver.wall_pressure.added_mass, change, self.dt, line.angles,
-                          line.slope)
 
 
 def _require_pinned(wall: Wall, kind: type[DewingError] = BadInput) -> None:

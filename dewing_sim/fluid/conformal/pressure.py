@@ -55,11 +55,26 @@ def added_mass(matrix, change, dt, angles, slope):
     ``matrix`` is `WallPressure.added_mass`; ``angles`` and ``slope`` are of the `mapping.Line`.
     """
     still = np.zeros(change.size)
-    _, _, acceleration, _ = motion_along(change, still, still, dt, angles, slope)
+    acceleration = motion_along(change, still, still, dt, angles, slope)[2]
     out = np.zeros(acceleration.size)
     for k in range(out.size):
         for i in range(out.size):
             out[i] += matrix[k, i] * acceleration[k]
+    return out
+
+
+@kernel
+def completed(pressure, velocity, predicted, matrix, dt, angles, slope):
+    """Return P (n,) at a wall velocity (columns,) from P at the ``predicted`` one."""
+    change, moves = np.empty(velocity.size), False
+    for i in range(velocity.size):
+        change[i] = velocity[i] - predicted[i]
+        moves = moves or change[i] != 0.0
+    if not moves:
+        return pressure
+    out = added_mass(matrix, change, dt, angles, slope)
+    for i in range(out.size):
+        out[i] += pressure[i]
     return out
 
 

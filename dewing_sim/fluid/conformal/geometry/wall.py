@@ -74,7 +74,8 @@ def motion_along(velocity, now, before, dt, angles, slope):
     They are interpolated cubically; columns lie at theta = pi - (c + 1/2) d theta, even in theta.
     """
     columns, n = velocity.size, angles.size
-    u, v, normal, speed = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    motion = np.empty((4, n))           # one array crosses over sooner than four
+    u, v, normal, speed = motion[0], motion[1], motion[2], motion[3]
     for i in range(n):
         position = columns - min(angles[i], 2.0 * np.pi - angles[i]) * columns / np.pi - 0.5
         first = np.intp(np.floor(position))
@@ -87,7 +88,7 @@ def motion_along(velocity, now, before, dt, angles, slope):
             change += weights[m] * (3.0 * velocity[c] - 4.0 * now[c] + before[c])
         u[i], v[i], speed[i] = rise * slope[i].real, rise * slope[i].imag, rise
         normal[i] = change / (2.0 * dt) * slope[i].imag
-    return u, v, normal, speed
+    return motion
 
 
 @kernel
