@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Settings every test runs under: no graphics, one thread, ROS within this machine."""
 
+import atexit
 import os
+import shutil
 import sys
 import tempfile
 from importlib.util import find_spec
@@ -14,7 +16,9 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 os.environ.setdefault('NUMBA_NUM_THREADS', '1')
 os.environ.setdefault('MPLBACKEND', 'Agg')
 os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-os.environ.setdefault('ROS_LOG_DIR', tempfile.mkdtemp(prefix='dewing-ros-log-'))
+if 'ROS_LOG_DIR' not in os.environ:
+    os.environ['ROS_LOG_DIR'] = tempfile.mkdtemp(prefix='dewing-ros-log-')
+    atexit.register(shutil.rmtree, os.environ['ROS_LOG_DIR'], ignore_errors=True)
 os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
 # The ROS wheels do not set it, and a sourced system ROS does not know this environment.
 os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join(

@@ -37,6 +37,7 @@ from rosgraph_msgs.msg import Clock
 from dewing_sim.errors import BadInput, DewingError, RunFailed
 from dewing_sim.machine import garbage
 from dewing_sim.machine.signals import Stop
+from dewing_sim.ros import logs
 
 SPIN = 0.2                      # s, longest time without a look at signals and conditions
 DOMAINS = range(1, 102)         # usable on every system without clashing with ephemeral ports
@@ -74,6 +75,7 @@ class Session:
     def __init__(self, domain: int | None = None):
         """Join the ROS domain ``domain``, by default that of the environment."""
         os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+        logs.provide()
         self.context = Context()
         rclpy.init(args=[], context=self.context, domain_id=domain)
         self.executor = executor_of(self.context)
@@ -148,6 +150,7 @@ def run(find: Callable[[], Sequence[Callable[[], Node]]],
     try:
         with Stop() as stop:
             makes = find()
+            logs.provide()
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
             return _spin([make() for make in makes], stop)
     except (DewingError, OSError, RuntimeError) as error:
