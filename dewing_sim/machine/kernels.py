@@ -48,6 +48,12 @@ summing_kernel = compiled(error_model='numpy', fastmath={'reassoc', 'nsz'})
 stage = numba.njit(inline='always', error_model='numpy')
 # A part of several kernels: compiled once in each that calls it, and not kept by itself.
 part = numba.njit(error_model='numpy')
+# A kernel and a part that make no array. Numba counts the references to each array of a tuple that
+# one stage hands to the next, which costs more than a line of a field; not so here.
+LEAN = {'error_model': 'numpy', '_nrt': False}
+lean_kernel = compiled(**LEAN)
+# Python must not call the part: to make that possible would double the time to compile it.
+lean_part = numba.njit(**LEAN, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
 
 def formula(function: FunctionType) -> FunctionType:

@@ -20,8 +20,8 @@ LONGEST_FILE = 250
 LONGEST_FUNCTION = 45
 MOST_ARGUMENTS = 8          # by position
 # Decorators of compiled functions, which take no keywords; a signature names types.
-KERNELS = {'kernel', 'checked_kernel', 'summing_kernel', 'stage', 'part', 'formula', 'compiled',
-           'KERNEL', 'KERNEL_INSIDE'}
+KERNELS = {'kernel', 'checked_kernel', 'summing_kernel', 'lean_kernel', 'stage', 'part',
+           'lean_part', 'formula', 'compiled', 'KERNEL', 'KERNEL_INSIDE'}
 SIGNATURES = {'types.int64'}
 
 

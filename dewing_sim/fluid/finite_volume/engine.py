@@ -8,38 +8,43 @@ membrane has answered.  So the membrane is solved inside the pressure equation a
 stable at any mass ratio.
 """
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from dewing_sim.errors import BadInput, Diverged
 from dewing_sim.fluid.base import Fluid, Loads, Monitor, Prediction, Wall
 from dewing_sim.fluid.field import FlowField
-from dewing_sim.fluid.finite_volume import mapping, projection, step
+from dewing_sim.fluid.finite_volume import mapping, poisson, projection, step
 from dewing_sim.fluid.finite_volume.field import flow_field
 from dewing_sim.fluid.finite_volume.grid import Grid, build
-from dewing_sim.fluid.finite_volume.poisson import Poisson
+from dewing_sim.fluid.finite_volume.loads import integrate
 from dewing_sim.fluid.finite_volume.potential import Potential
 from dewing_sim.fluid.finite_volume.presets import NAME, PRESETS
+from dewing_sim.fluid.finite_volume.solver import Solver
 from dewing_sim.fluid.finite_volume.step import FlowState
 from dewing_sim.fluid.inflow import Inflow
+from dewing_sim.machine.resident import hold
 
-FASTEST = 50.0                      # |u| in free-stream speeds beyond which a run has diverged
 
-
-@dataclass(frozen=True)
-class _Fields:
+class _Fields(NamedTuple):
     """An unfinished step: predicted fluxes and the modal pressure increment."""
 
-    state: FlowState
-    metrics: mapping.Metrics
     fx: np.ndarray
     fy: np.ndarray
     even_hat: np.ndarray
     odd_hat: np.ndarray
     increment: np.ndarray           # jump of phi, above minus below, for the predicted wall
+
+
+class _Unfinished(NamedTuple):
+    """What `correct` needs of a step."""
+
+    state: FlowState
+    fields: _Fields
 
 
 class FiniteVolume(Fluid):
@@ -58,11 +63,12 @@ class FiniteVolume(Fluid):
         self.dt = dt
         self.theta = 2.0 * dt / 3.0
         self.columns = grid.columns
-        self.poisson = Poisson.of(grid)
-        self.impedance = self.poisson.added_mass / self.theta
+        self.solver = Solver.of(grid, self.nu, self.theta)
+        self._resident = hold(self.solver)
+        self.impedance = self.solver.impedance
         self.potential = Potential.of(grid, alpha)
-        self.solver = step.Solver.of(grid, self.nu, self.theta)
         self._g = self.solver.g
+        self._arms = grid.xc[grid.plate] - 0.25
 
     @classmethod
     def preset(cls, name: str, reynolds: float, alpha: float, dt: float) -> 'FiniteVolume':
@@ -106,53 +112,32 @@ class FiniteVolume(Fluid):
         if inflow is not None:
             raise BadInput('the finite-volume engine knows no gusts, heave or pitch: '
                            'numerics.engine: conformal does')
-        metrics = mapping.metrics(self.grid, wall)
-        u, v = self._momentum(state, metrics, wall)
-        fx, fy = projection.fluxes(self.grid, self._g, metrics, u, v)
-        outflow = projection.divergence(fx, fy, self.grid.dx, self.grid.dy)
-        even_hat, odd_hat, increment = self.poisson.forward(outflow / self.theta)
-        jump = self._jump(state.p) - increment
-        if not np.isfinite(jump).all():
+        *fields, jump, deflection, is_finite = step.predict(
+            self._resident, *state.past, wall.height, wall.velocity, state.velocity,
+            *wall.edge_velocity, self.potential.outlet_pressure(state.circulation))
+        mapping.require_room(deflection)
+        if not is_finite:
             raise Diverged('the flow became non-finite: lower the time step or refine the grid')
-        return Prediction(wall, jump,
-                          _Fields(state, metrics, fx, fy, even_hat, odd_hat, increment))
+        return Prediction(wall, jump, _Unfinished(state, _Fields(*fields)))
 
     def correct(self, prediction: Prediction, velocity: np.ndarray) -> FlowState:
         """Finish the projection with the wall velocity (n,) of the columns."""
-        fields: _Fields = prediction.fields
-        grid, state = self.grid, fields.state
-        change = velocity - prediction.wall.velocity
-        fx, fy = fields.fx, fields.fy.copy()
-        fy[grid.plate, grid.middle] = velocity
-        phi = self.poisson.backward(
-            fields.even_hat, fields.odd_hat, fields.increment + self.impedance @ change,
-            grid.dx[grid.plate] * change / self.theta)
-        fx = fx.copy()
-        projection.correct(fx, fy, phi, grid.lattice, self.theta)
-        u, v = projection.velocities(grid, self._g, fields.metrics, fx, fy)
-        motion = mapping.grid_velocity(grid, replace(prediction.wall, velocity=velocity))
-        self._guard(u)
-        return FlowState(
-            u=u, v=v, fx=fx, w=fy - np.outer(motion, self._g.f), p=state.p + phi,
-            u_before=state.u, v_before=state.v, fx_before=state.fx, w_before=state.w,
-            height=prediction.wall.height, velocity=velocity, circulation=state.circulation)
+        (state, fields), wall = prediction.fields, prediction.wall
+        *after, is_sound = step.correct(
+            self._resident, *fields, state.p, wall.height, wall.velocity, velocity,
+            *wall.edge_velocity)
+        if not is_sound:
+            raise Diverged(f'the flow reached {np.abs(after[0]).max():.3g} free-stream speeds: '
+                           'lower the time step or refine the grid')
+        return state.followed_by(*after, wall.height, velocity)
 
     def loads(self, state: FlowState) -> Loads:
         """Integrate pressure and wall shear over both sides of the wing."""
-        grid = self.grid
-        jump = self._jump(state.p)
-        dx, middle = grid.dx[grid.plate], grid.middle
-        height = mapping.metrics(grid, Wall(state.height, state.velocity)).height_f
-        below, above = (state.u[:, row] / (1.0 + height * self._g.dc[row])
-                        for row in (middle - 1, middle))
-        shear = self.nu * (below + above) / (0.5 * grid.dy[middle])
-        normal = np.sum(jump * dx)
-        axial = (np.sum(shear * self.solver.blocked * grid.dxf)
-                 - np.sum(jump * np.diff(state.height)))
-        moment = -np.sum(jump * dx * (grid.xc[grid.plate] - 0.25))
-        cos, sin = np.cos(self.alpha), np.sin(self.alpha)
-        return Loads(jump, cl=2.0 * float(normal * cos - axial * sin),
-                     cd=2.0 * float(normal * sin + axial * cos), cm=2.0 * float(moment))
+        jump, axial, normal, moment = integrate(
+            self._resident, state.u, state.p, state.height, self._arms)
+        cos, sin = math.cos(self.alpha), math.sin(self.alpha)
+        return Loads(jump, cl=2.0 * (normal * cos - axial * sin),
+                     cd=2.0 * (normal * sin + axial * cos), cm=2.0 * moment)
 
     def field(self, state: FlowState) -> FlowField:
         """Return vorticity and stream function on the cell corners."""
@@ -165,13 +150,18 @@ class FiniteVolume(Fluid):
 
     def parts(self, state: FlowState, wall: Wall) -> dict[str, Callable[[], Any]]:
         """Return what `predict` and `correct` spend most of their time on."""
-        metrics = mapping.metrics(self.grid, wall)
+        solver, grid = self.solver, self.grid
+        m = mapping.metrics(grid, wall)
         still = np.zeros(len(self.columns) - 1)
-        solution = self.poisson.forward(state.p)
+        outlet = self.potential.outlet_pressure(state.circulation)
+        fx, fy = projection.fluxes(grid, self._g, m, state.u, state.v)
+        solution = poisson.forward(fx, fy, grid.dx, grid.dy, self.theta, solver.poisson)
+        past, held = hold(step.Past(*state.past)), hold(m)
         return {
-            'momentum': lambda: self._momentum(state, metrics, wall),
-            'pressure_forward': lambda: self.poisson.forward(state.p),
-            'pressure_backward': lambda: self.poisson.backward(*solution, still),
+            'momentum': lambda: step.velocities(self._resident, past, held, still, outlet),
+            'pressure_forward': lambda: poisson.forward(fx, fy, grid.dx, grid.dy, self.theta,
+                                                        solver.poisson),
+            'pressure_backward': lambda: poisson.backward(*solution, still, solver.poisson),
         }
 
     def monitor(self, state: FlowState) -> Monitor:
@@ -183,20 +173,3 @@ class FiniteVolume(Fluid):
         outside = np.minimum(np.abs(grid.xc), np.abs(grid.xc - 1.0))
         return Monitor.of(self.dt * rate / (1.0 + np.outer(m.height_c, self._g.dc)),
                           np.hypot(outside[:, None], grid.yc), self.slip(state))
-
-    def _momentum(self, state: FlowState, m: mapping.Metrics, wall: Wall,
-                  ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the velocities that satisfy momentum with the old pressure."""
-        return step.velocities(state, m, wall.velocity, self.solver,
-                               self.potential.outlet_pressure(state.circulation))
-
-    def _jump(self, p: np.ndarray) -> np.ndarray:
-        """Return the pressure jump, below minus above, of the columns on the plate."""
-        plate, middle = self.grid.plate, self.grid.middle
-        return p[plate, middle - 1] - p[plate, middle]
-
-    def _guard(self, u: np.ndarray) -> None:
-        fastest = np.abs(u).max()
-        if not fastest < FASTEST:
-            raise Diverged(f'the flow reached {fastest:.3g} free-stream speeds: '
-                           'lower the time step or refine the grid')

@@ -23,6 +23,7 @@ class Lattice(NamedTuple):
     dy: np.ndarray                  # (ny,) cell heights
     dxf: np.ndarray                 # (nx + 1,) distances of centres across the xi-faces
     dyf: np.ndarray                 # (ny + 1,) and across the eta-faces
+    below: np.ndarray               # (ny + 1,) share of that distance in the cell below
     leading: int                    # columns leading <= i < trailing touch the plate
     trailing: int
 
@@ -93,7 +94,8 @@ class Grid:
     @cached_property
     def lattice(self) -> Lattice:
         """The grid for compiled code."""
-        return Lattice(self.dx, self.dy, self.dxf, self.dyf, self.leading, self.trailing)
+        below = 0.5 * np.concatenate(([0.0], self.dy)) / self.dyf
+        return Lattice(self.dx, self.dy, self.dxf, self.dyf, below, self.leading, self.trailing)
 
     @cached_property
     def following_f(self) -> np.ndarray:

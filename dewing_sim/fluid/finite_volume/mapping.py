@@ -49,31 +49,45 @@ def decay(grid: Grid) -> Decay:
 
 def metrics(grid: Grid, wall: Wall) -> Metrics:
     """Return the metric factors for a wall; beyond the edges its end heights decay."""
-    deflection = np.abs(wall.height).max()
+    require_room(np.abs(wall.height).max())
+    return metrics_of(wall.height, wall.velocity, *wall.edge_velocity, Following.of(grid))
+
+
+def require_room(deflection: float) -> None:
+    """Raise `Diverged` for a wall that leaves the chord (by ``deflection``, c) too far."""
     if not deflection < 0.8:                    # J > 0 needs |Y| < 1.16
         raise Diverged(f'the membrane reached {deflection:.3g} chords of deflection; '
                        'the moving grid admits 0.8: lower the load or the time step')
-    return Metrics(*_heights_and_slopes(wall.height, grid.following_f, grid.leading,
-                                        grid.dx, grid.dxf), grid_velocity(grid, wall))
 
 
-def grid_velocity(grid: Grid, wall: Wall) -> np.ndarray:
-    """Return Y_t at the column centres (nx,)."""
-    before, behind = wall.edge_velocity
-    return _extend(before, wall.velocity, behind, grid.following_c, grid.leading)
+class Following(NamedTuple):
+    """How far faces and centres of the columns follow the nearest edge of the wall, see `Grid`."""
+
+    face: np.ndarray
+    centre: np.ndarray
+    leading: int
+    dx: np.ndarray
+    dxf: np.ndarray
+
+    @classmethod
+    def of(cls, grid: Grid) -> 'Following':
+        """Return the tables of ``grid``."""
+        return cls(grid.following_f, grid.following_c, grid.leading, grid.dx, grid.dxf)
 
 
 @kernel
-def _heights_and_slopes(height, following_f, leading, dx, dxf):
-    nx = len(dx)
-    height_f = _extend(height[0], height, height[-1], following_f, leading)
+def metrics_of(height, velocity, before, behind, following):
+    """Return the `Metrics` of a wall whose edges rise at the rates ``before`` and ``behind``."""
+    nx, dx, dxf = len(following.dx), following.dx, following.dxf
+    height_f = _extend(height[0], height, height[-1], following.face, following.leading)
     height_c, slope_c, slope_f = np.empty(nx), np.empty(nx), np.zeros(nx + 1)
     for i in range(nx):
         height_c[i] = 0.5 * (height_f[i] + height_f[i + 1])
         slope_c[i] = (height_f[i + 1] - height_f[i]) / dx[i]
     for i in range(1, nx):
         slope_f[i] = (height_c[i] - height_c[i - 1]) / dxf[i]
-    return height_f, height_c, slope_f, slope_c
+    return Metrics(height_f, height_c, slope_f, slope_c,
+                   _extend(before, velocity, behind, following.centre, following.leading))
 
 
 @kernel

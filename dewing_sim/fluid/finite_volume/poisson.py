@@ -14,73 +14,90 @@ the capacitance matrix.  A wall that moves up with w leaves J0 = C dx w / theta,
 added-mass matrix M_A = (1 - C W)^-1 C diag(dx).
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
 
 from dewing_sim.fluid.finite_volume.grid import Grid
-from dewing_sim.machine.kernels import kernel
+from dewing_sim.fluid.finite_volume.projection import outflow
+from dewing_sim.machine.kernels import kernel, scratch, stage
 
 
-@dataclass(frozen=True)
-class Factors:
-    """Batched symmetric tridiagonal factors, one system a mode: shapes (nx, modes)."""
+class Modes(NamedTuple):
+    """Even or odd modes, and their symmetric tridiagonal factors (nx, modes), one system each."""
 
+    vectors: np.ndarray             # Q (ny/2, modes), rows from the plate out
+    transposed: np.ndarray
     pivot: np.ndarray
     ratio: np.ndarray
 
 
-@dataclass(frozen=True)
-class Poisson:
+class Poisson(NamedTuple):
     """The factored pressure equation of one grid."""
 
-    even: np.ndarray                # Q of the even modes (ny/2, ny/2), rows from the plate out
-    odd: np.ndarray
-    even_factors: Factors
-    odd_factors: Factors
-    plate: slice
+    even: Modes
+    odd: Modes
+    leading: int                    # columns leading <= i < trailing touch the plate
+    trailing: int
     passage: np.ndarray             # W on the plate
     cut: np.ndarray                 # (1 - C W)^-1
     added_mass: np.ndarray          # M_A, pressure jump per wall acceleration
+    halves: np.ndarray              # (2, nx, ny/2) scratch
 
     @classmethod
     def of(cls, grid: Grid) -> 'Poisson':
         """Factor the pressure equation of ``grid``."""
         stiffness, mass = _chordwise(grid)
-        (even_values, even), (odd_values, odd) = _normal_modes(grid)
-        even_factors = _factor(stiffness, mass, even_values)
-        odd_factors = _factor(stiffness, mass, odd_values)
-        capacitance = _capacitance(odd, odd_factors, grid.plate)
+        even, odd = (Modes(vectors, np.ascontiguousarray(vectors.T),
+                           *_factor(stiffness, mass, values))
+                     for values, vectors in _normal_modes(grid))
+        capacitance = _capacitance(odd, grid.plate)
         dx = grid.dx[grid.plate]
         passage = dx / grid.dyf[grid.middle]
         cut = np.linalg.inv(np.eye(len(dx)) - capacitance * passage)
-        return cls(even, odd, even_factors, odd_factors, grid.plate, passage, cut,
-                   cut @ (capacitance * dx))
+        return cls(even, odd, grid.leading, grid.trailing, passage, cut,
+                   cut @ (capacitance * dx), *scratch(1, 2, len(mass), grid.middle))
 
-    def forward(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return modal even and odd solutions and the pressure jump without wall motion.
 
-        ``r`` (nx, ny) is the divergence of the fluxes integrated over each cell, over theta; the
-        jump (plate columns,) is above minus below.
-        """
-        even, odd = _fold(r)
-        even_hat = even @ self.even
-        odd_hat = odd @ self.odd
-        _solve(self.even_factors.pivot, self.even_factors.ratio, even_hat)
-        _solve(self.odd_factors.pivot, self.odd_factors.ratio, odd_hat)
-        return even_hat, odd_hat, self.cut @ (2.0 * (odd_hat[self.plate] @ self.odd[0]))
+@kernel
+def forward(fx, fy, dx, dy, theta, poisson):
+    """Return modal even and odd solutions and the pressure jump without wall motion.
 
-    def backward(self, even_hat: np.ndarray, odd_hat: np.ndarray, jump: np.ndarray,
-                 wall_flux: np.ndarray) -> np.ndarray:
-        """Return phi (nx, ny) given the jump and the added wall flux dx w / theta (plate,).
+    The right-hand side is the divergence of the fluxes over theta; the jump (plate columns,) is
+    above minus below.
+    """
+    even, odd = poisson.even, poisson.odd
+    _fold(fx, fy, dx, dy, -0.5 / theta, poisson.halves)
+    even_hat = np.dot(poisson.halves[0], even.vectors)
+    odd_hat = np.dot(poisson.halves[1], odd.vectors)
+    _solve(even.pivot, even.ratio, even_hat)
+    _solve(odd.pivot, odd.ratio, odd_hat)
+    uncut = 2.0 * np.dot(odd_hat[poisson.leading:poisson.trailing], odd.vectors[0])
+    return even_hat, odd_hat, np.dot(poisson.cut, uncut)
 
-        Both act as a pair of opposite sources in the cells beside the plate.
-        """
-        source = np.zeros((len(odd_hat), len(self.odd)))
-        source[self.plate] = np.outer(self.passage * jump + wall_flux, self.odd[0])
-        _solve(self.odd_factors.pivot, self.odd_factors.ratio, source)
-        return _unfold(even_hat @ self.even.T, (odd_hat + source) @ self.odd.T)
+
+@kernel
+def backward(even_hat, odd_hat, jump, wall_flux, poisson):
+    """Return even and odd parts (2, nx, ny/2) of phi given the jump and the added wall flux.
+
+    That is dx w / theta (plate,). Both act as a pair of opposite sources in the cells beside the
+    plate. The result lasts until the next call.
+    """
+    even, odd, halves = poisson.even, poisson.odd, poisson.halves
+    source, total = halves[0], halves[1]
+    source[:, :] = 0.0
+    for n in range(len(jump)):
+        strength = poisson.passage[n] * jump[n] + wall_flux[n]
+        for k in range(source.shape[1]):
+            source[poisson.leading + n, k] = strength * odd.vectors[0, k]
+    _solve(odd.pivot, odd.ratio, source)
+    for i in range(source.shape[0]):
+        for k in range(source.shape[1]):
+            source[i, k] += odd_hat[i, k]
+    np.dot(source, odd.transposed, total)
+    np.dot(even_hat, even.transposed, source)
+    return halves
 
 
 def _chordwise(grid: Grid) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
@@ -108,7 +125,9 @@ def _normal_modes(grid: Grid):
     return modes
 
 
-def _factor(stiffness, mass: np.ndarray, eigenvalues: np.ndarray) -> Factors:
+def _factor(stiffness, mass: np.ndarray, eigenvalues: np.ndarray,
+            ) -> tuple[np.ndarray, np.ndarray]:
+    """Return pivots and ratios (nx, modes)."""
     diagonal, off = stiffness
     pivot = np.empty((len(mass), len(eigenvalues)))
     ratio = np.zeros_like(pivot)
@@ -117,18 +136,18 @@ def _factor(stiffness, mass: np.ndarray, eigenvalues: np.ndarray) -> Factors:
     for i in range(1, len(mass)):
         ratio[i - 1] = -off[i - 1] * pivot[i - 1]
         pivot[i] = 1.0 / (matrix[i] + off[i - 1] * ratio[i - 1])
-    return Factors(pivot, ratio)
+    return pivot, ratio
 
 
-def _capacitance(odd: np.ndarray, factors: Factors, plate: slice) -> np.ndarray:
+def _capacitance(odd: Modes, plate: slice) -> np.ndarray:
     """Return C: the jump from unit opposite sources beside the plate in the uncut domain."""
     columns = range(plate.start, plate.stop)
     capacitance = np.empty((len(columns), len(columns)))
     for number, column in enumerate(columns):
-        response = np.zeros_like(factors.pivot)
-        response[column] = odd[0]
-        _solve(factors.pivot, factors.ratio, response)
-        capacitance[:, number] = 2.0 * (response[plate] @ odd[0])
+        response = np.zeros_like(odd.pivot)
+        response[column] = odd.vectors[0]
+        _solve(odd.pivot, odd.ratio, response)
+        capacitance[:, number] = 2.0 * (response[plate] @ odd.vectors[0])
     return capacitance
 
 
@@ -146,27 +165,13 @@ def _solve(pivot, ratio, d):
             d[i, k] = d[i, k] * pivot[i, k] + ratio[i, k] * d[i + 1, k]
 
 
-@kernel
-def _fold(r):
-    """Return the even and odd parts (nx, ny/2) of -r, rows from the plate outwards."""
-    nx, ny = r.shape
-    half = ny // 2
-    even = np.empty((nx, half))
-    odd = np.empty((nx, half))
-    for i in range(nx):
+@stage
+def _fold(fx, fy, dx, dy, share, halves):
+    """Fill the even and the odd part of ``share`` times the outflow, rows from the plate out."""
+    half = len(dy) // 2
+    for i in range(len(dx)):
         for k in range(half):
-            above, below = r[i, half + k], r[i, half - 1 - k]
-            even[i, k] = -0.5 * (above + below)
-            odd[i, k] = -0.5 * (above - below)
-    return even, odd
-
-
-@kernel
-def _unfold(even, odd):
-    nx, half = even.shape
-    phi = np.empty((nx, 2 * half))
-    for i in range(nx):
-        for k in range(half):
-            phi[i, half + k] = even[i, k] + odd[i, k]
-            phi[i, half - 1 - k] = even[i, k] - odd[i, k]
-    return phi
+            above = outflow(fx, fy, dx, dy, i, half + k)
+            below = outflow(fx, fy, dx, dy, i, half - 1 - k)
+            halves[0, i, k] = share * (above + below)
+            halves[1, i, k] = share * (above - below)

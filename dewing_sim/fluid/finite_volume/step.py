@@ -1,9 +1,10 @@
 # Copyright 2026 The dewing authors
 # SPDX-License-Identifier: Apache-2.0
-"""The momentum half of a step: velocities that the pressure has not yet made free of divergence.
+"""Both halves of a step, each compiled as one function that works in fields made once.
 
-Fluxes are extrapolated to the new time; coefficients, right-hand side and two implicit sweeps
-follow for each velocity component.
+`predict` is momentum, and the projection up to the pressure jump that the predicted wall velocity
+makes; `correct` finishes the projection with the final one.  A fresh array costs more than the
+arithmetic that fills it: only what a state or a prediction keeps is new.
 """
 
 from dataclasses import dataclass
@@ -12,12 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from dewing_sim.fluid.base import Wall
-from dewing_sim.fluid.finite_volume import adi, mapping, momentum, transport
-from dewing_sim.fluid.finite_volume.grid import Grid, Lattice
+from dewing_sim.fluid.finite_volume import adi, mapping, momentum, poisson, projection
+from dewing_sim.fluid.finite_volume.loads import jump_of
 from dewing_sim.machine.kernels import kernel, stage
 
-UPWIND_SHARE = 0.5                  # in the far field only
-UPWIND_START, UPWIND_FULL = 1.0, 4.0    # chords from the plate
+FASTEST = 50.0                      # |u| in free-stream speeds beyond which a run has diverged
 
 
 @dataclass(frozen=True)
@@ -44,45 +44,22 @@ class FlowState:
         return cls(u=u, v=v, fx=fx, w=w, p=p, u_before=u, v_before=v, fx_before=fx, w_before=w,
                    height=wall.height, velocity=wall.velocity, circulation=circulation)
 
+    @property
+    def past(self) -> tuple[np.ndarray, ...]:
+        """The fields of the last two instants, a `Past`."""
+        return (self.u, self.u_before, self.v, self.v_before, self.p, self.fx, self.fx_before,
+                self.w, self.w_before)
 
-class Upwind(NamedTuple):
-    """Share of upwinding by the places of faces and centres: zero near the membrane."""
-
-    x: np.ndarray
-    y: np.ndarray
-    xc: np.ndarray
-    yc: np.ndarray
-
-
-class Solver(NamedTuple):
-    """All that stays the same from step to step."""
-
-    nu: float
-    theta: float                    # 2 dt / 3
-    lattice: Lattice
-    g: mapping.Decay
-    upwind: Upwind
-    blocked: np.ndarray             # (nx + 1,) share of the control volume of u on the plate
-
-    @classmethod
-    def of(cls, grid: Grid, nu: float, theta: float) -> 'Solver':
-        """Return the solver for one grid, viscosity and time step."""
-        upwind = Upwind(_upwind(np.maximum(-grid.x, grid.x - 1.0)), _upwind(np.abs(grid.y)),
-                        _upwind(np.maximum(-grid.xc, grid.xc - 1.0)), _upwind(np.abs(grid.yc)))
-        return cls(nu, theta, grid.lattice, mapping.decay(grid), upwind, _blocked(grid))
+    def followed_by(self, u: np.ndarray, v: np.ndarray, fx: np.ndarray, w: np.ndarray,
+                    p: np.ndarray, height: np.ndarray, velocity: np.ndarray) -> 'FlowState':
+        """Return the state one step later."""
+        return FlowState(u=u, v=v, fx=fx, w=w, p=p, u_before=self.u, v_before=self.v,
+                         fx_before=self.fx, w_before=self.w, height=height, velocity=velocity,
+                         circulation=self.circulation)
 
 
-class Stencil(NamedTuple):
-    """Coefficients of the four neighbours of a velocity, see `transport`."""
-
-    west: np.ndarray
-    east: np.ndarray
-    south: np.ndarray
-    north: np.ndarray
-
-
-class Fields(NamedTuple):
-    """What a step starts from; the fluxes are extrapolated to its end."""
+class Past(NamedTuple):
+    """The last two instants, see `FlowState`."""
 
     u: np.ndarray
     u_before: np.ndarray
@@ -90,56 +67,85 @@ class Fields(NamedTuple):
     v_before: np.ndarray
     p: np.ndarray
     fx: np.ndarray
+    fx_before: np.ndarray
     w: np.ndarray
+    w_before: np.ndarray
 
 
-def velocities(state: FlowState, m: mapping.Metrics, wall_velocity: np.ndarray, solver: Solver,
-               p_outlet: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return u and v that satisfy momentum with the old pressure."""
-    fields = Fields(state.u, state.u_before, state.v, state.v_before, state.p,
-                    2.0 * state.fx - state.fx_before, 2.0 * state.w - state.w_before)
-    return _velocities(fields, m, wall_velocity - state.velocity, solver, p_outlet)
+class Before(NamedTuple):
+    """What the projection corrects: predicted fluxes, and the old pressure."""
+
+    fx: np.ndarray
+    fy: np.ndarray
+    p: np.ndarray
+
+
+class After(NamedTuple):
+    """What it fills, see `FlowState`."""
+
+    u: np.ndarray
+    v: np.ndarray
+    fx: np.ndarray
+    w: np.ndarray
+    p: np.ndarray
 
 
 @kernel
-def _velocities(fields, m, wall_change, solver, p_outlet):
-    """Compute both in one function: to hand over the arrays takes a while, and is done once."""
-    u, v = np.zeros_like(fields.u), np.zeros_like(fields.v)     # the far field is given
-    drag = np.zeros((2, len(u)))
-    stencil = _stencil(u)
-    transport.u_coefficients(fields.fx, fields.w, m, solver, stencil, drag)
-    momentum.u_explicit(fields.u, fields.u_before, fields.p, p_outlet, stencil, drag, solver, u)
-    momentum.u_slope_terms(fields.u, fields.u_before, fields.p, m, solver, u)
-    adi.sweep_x(u, stencil.west, stencil.east, np.empty_like(u), len(u))
-    adi.sweep_y(u, stencil.south, stencil.north, drag, len(u))
-    stencil = _stencil(v)
-    transport.v_coefficients(fields.fx, fields.w, m, solver, stencil)
-    momentum.v_explicit(fields.v, fields.v_before, fields.p, m, stencil, solver, v)
-    momentum.v_slope_terms(fields.v, fields.v_before, m, solver, v)
-    leading, middle = solver.lattice.leading, len(solver.lattice.dy) // 2
-    for i in range(wall_change.size):
-        v[leading + i, middle] = wall_change[i]
-    adi.sweep_x(v, stencil.west, stencil.east, np.empty_like(v), len(v))
-    adi.sweep_y(v, stencil.south, stencil.north, np.zeros((2, len(v))), len(v))
-    return fields.u + u, fields.v + v
+def predict(solver, u, u_before, v, v_before, p, fx, fx_before, w, w_before, height,
+            velocity, velocity_before, before, behind, p_outlet):
+    """Return what `correct` needs, the pressure jump, the largest deflection and if all is finite.
+
+    ``solver`` holds the `Solver`; fields are those of a `FlowState`, ``before`` and ``behind``
+    the velocities of the edges, ``p_outlet`` (ny,) is given behind.
+    """
+    solver = solver.value
+    m = mapping.metrics_of(height, velocity, before, behind, solver.following)
+    past = Past(u, u_before, v, v_before, p, fx, fx_before, w, w_before)
+    _velocities(past, m, velocity - velocity_before, p_outlet, solver)
+    lattice, fields, theta = solver.lattice, solver.fields, solver.theta
+    fx, fy = np.empty(u.shape), np.empty(v.shape)
+    projection.to_fluxes(fields.u, fields.v, lattice, m, solver.g, fx, fy)
+    even_hat, odd_hat, increment = poisson.forward(fx, fy, lattice.dx, lattice.dy, theta,
+                                                   solver.poisson)
+    jump = jump_of(p, lattice) - increment
+    return (fx, fy, even_hat, odd_hat, increment, jump, np.abs(height).max(),
+            np.isfinite(jump).all())
 
 
 @stage
-def _stencil(like):
-    rows, columns = like.shape
-    four = np.empty((4, rows, columns))
-    return Stencil(four[0], four[1], four[2], four[3])
+def _velocities(past, m, wall_change, p_outlet, solver):
+    """Fill u and v of the solver's fields: they satisfy momentum with the old pressure."""
+    f = solver.fields
+    momentum.eliminate_u(past, m, p_outlet, solver, f)
+    adi.finish(past.u, f.south, f.north, f.drag, f.ratio, f.r, f.u)
+    momentum.eliminate_v(past, m, wall_change, solver, f)
+    adi.finish(past.v, f.south, f.north, f.drag, f.ratio, f.r, f.v)
 
 
-def _upwind(distance: np.ndarray) -> np.ndarray:
-    """Return the share of upwinding at a distance (c) from the plate: zero near the membrane."""
-    ramp = (distance - UPWIND_START) / (UPWIND_FULL - UPWIND_START)
-    return UPWIND_SHARE * np.clip(ramp, 0.0, 1.0)
+@kernel
+def velocities(solver, past, m, wall_change, p_outlet):
+    """Do the momentum half alone, for those who time it."""
+    _velocities(past.value, m.value, wall_change, p_outlet, solver.value)
 
 
-def _blocked(grid: Grid) -> np.ndarray:
-    """Return the share (nx + 1,) of the control volume of u that lies on the plate."""
-    on_plate = np.zeros(len(grid.dx))
-    on_plate[grid.plate] = grid.dx[grid.plate]
-    padded = np.concatenate(([0.0], on_plate, [0.0]))
-    return 0.5 * (padded[1:] + padded[:-1]) / grid.dxf
+@kernel
+def correct(solver, fx, fy, even_hat, odd_hat, increment, p, height, predicted, velocity, before,
+            behind):
+    """Return u, v, Fx, W and p after the step, and whether u is sound.
+
+    ``predicted`` is the wall velocity of `predict`, ``velocity`` the final one.
+    """
+    solver = solver.value
+    m = mapping.metrics_of(height, velocity, before, behind, solver.following)
+    change = velocity - predicted
+    dx = solver.lattice.dx[solver.lattice.leading:solver.lattice.trailing]
+    halves = poisson.backward(even_hat, odd_hat, increment + np.dot(solver.impedance, change),
+                              dx * change / solver.theta, solver.poisson)
+    after = After(np.empty(fx.shape), np.empty(fy.shape), np.empty(fx.shape), np.empty(fy.shape),
+                  np.empty(p.shape))
+    projection.correct(Before(fx, fy, p), halves, m, solver, after)
+    faults = 0
+    for i in range(fx.shape[0]):
+        for j in range(fx.shape[1]):
+            faults += not abs(after.u[i, j]) < FASTEST
+    return after.u, after.v, after.fx, after.w, after.p, faults == 0

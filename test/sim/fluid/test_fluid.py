@@ -2,16 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The finite-volume engine against exact statements: pressure, divergence, added mass, orders."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from dewing_sim.errors import Diverged
 from dewing_sim.fluid.base import Wall
-from dewing_sim.fluid.finite_volume import mapping, projection
+from dewing_sim.fluid.finite_volume import mapping, poisson, projection
 from dewing_sim.fluid.finite_volume.engine import FiniteVolume
 from dewing_sim.fluid.finite_volume.grid import build
-from dewing_sim.fluid.finite_volume.poisson import Poisson
 from dewing_sim.fluid.finite_volume.presets import PRESETS, Spacing
+from dewing_sim.fluid.finite_volume.solver import Solver
+from dewing_sim.fluid.finite_volume.step import After, Before
+from dewing_sim.machine.kernels import kernel
 from dewing_sim.verification.fluid.added_mass import AddedMassRun, sine
 from dewing_sim.verification.fluid.rigid_flow import parabola
 from dewing_sim.verification.fluid.vortex import VortexRun, free_engine, heaving, with_velocities
@@ -35,21 +39,30 @@ def test_presets_put_faces_on_both_edges_and_on_the_plate(name):
     assert (np.diff(grid.x) > 0.0).all() and (np.diff(grid.y) > 0.0).all()
 
 
+@kernel
+def corrected(before, halves, m, solver, after):
+    projection.correct(before, halves, m, solver, after)
+
+
 def test_pressure_solution_satisfies_the_cut_laplacian():
     grid = build(COARSE)
-    poisson = Poisson.of(grid)
+    solver = Solver.of(grid, 1.0, 0.1)
     rng = np.random.default_rng(1)
     fx = rng.normal(size=(len(grid.x), len(grid.dy)))
     fy = rng.normal(size=(len(grid.dx), len(grid.y)))
-    theta = 0.1
-    r = projection.divergence(fx, fy, grid.dx, grid.dy) / theta
-    even, odd, jump = poisson.forward(r)
-    phi = poisson.backward(even, odd, jump, np.zeros(len(jump)))
-    assert phi[grid.plate, grid.middle] - phi[grid.plate, grid.middle - 1] == pytest.approx(
-        jump, abs=1.0e-10 * np.abs(phi).max())
-    projection.correct(fx, fy, phi, grid.lattice, theta)
-    left = projection.divergence(fx, fy, grid.dx, grid.dy)
-    assert np.abs(left).max() < 1.0e-10 * np.abs(theta * r).max()
+    fy[grid.plate, grid.middle] = 0.0
+    given = np.abs(projection.divergence(fx, fy, grid.dx, grid.dy)).max()
+    still = Wall.flat(grid.columns)
+    even, odd, jump = poisson.forward(fx, fy, grid.dx, grid.dy, solver.theta, solver.poisson)
+    halves = poisson.backward(even, odd, jump, still.velocity, solver.poisson)
+    after = After(*map(np.empty_like, (fx, fy, fx, fy, halves[0])))._replace(
+        p=np.empty((len(grid.dx), len(grid.dy))))
+    before = Before(fx, fy, np.zeros_like(after.p))
+    corrected(before, halves, mapping.metrics(grid, still), solver, after)
+    assert after.p[grid.plate, grid.middle] - after.p[
+        grid.plate, grid.middle - 1] == pytest.approx(jump, abs=1.0e-10 * np.abs(after.p).max())
+    left = projection.divergence(after.fx, after.v, grid.dx, grid.dy)
+    assert np.abs(left).max() < 1.0e-10 * given
 
 
 def test_fluxes_stay_free_of_divergence_on_the_moving_grid(engine):
@@ -64,6 +77,47 @@ def test_fluxes_stay_free_of_divergence_on_the_moving_grid(engine):
     outflow = projection.divergence(fx, fy, engine.grid.dx, engine.grid.dy)
     assert np.abs(outflow).max() < 1.0e-12
     assert fy[engine.grid.plate, engine.grid.middle] == pytest.approx(wall.velocity, abs=1e-14)
+
+
+def test_a_prediction_outlives_the_next_and_needs_nothing_left_of_the_last(engine):
+    state = engine.rest(parabola(engine.columns, 0.02, 0.0), 0.2)
+    walls = [parabola(engine.columns, height, 0.3) for height in (0.021, 0.03)]
+    state = engine.correct(engine.predict(state, walls[0]), walls[0].velocity)
+    alone = engine.correct(engine.predict(state, walls[0]), walls[0].velocity)
+    first = engine.predict(state, walls[0])
+    fields = engine.solver.fields
+    scratch = [*fields[:fields._fields.index('lines')], *fields.lines, *fields.sloped,
+               engine.solver.poisson.halves]
+    for field in scratch:
+        field.fill(np.nan)
+    engine.predict(state, walls[1])
+    for field in scratch:
+        field.fill(np.nan)
+    again = engine.correct(first, walls[0].velocity)
+    assert all(np.array_equal(one, other) for one, other in zip(
+        (alone.u, alone.v, alone.fx, alone.w, alone.p),
+        (again.u, again.v, again.fx, again.w, again.p), strict=True))
+    repeated = engine.correct(engine.predict(state, walls[0]), walls[0].velocity)
+    assert np.array_equal(alone.u, repeated.u) and np.array_equal(alone.p, repeated.p)
+
+
+def test_loads_are_those_of_pressure_and_wall_shear(engine):
+    state = engine.rest(parabola(engine.columns, 0.05, 0.0), 0.2)
+    x, grid = engine.columns, engine.grid
+    p = np.zeros_like(state.p)
+    p[grid.plate, grid.middle - 1] = 0.5                # the jump of a uniform load
+    loads = engine.loads(replace(state, u=np.zeros_like(state.u), p=p))
+    assert loads.jump == pytest.approx(0.5)
+    assert (loads.cl, loads.cd) == pytest.approx((np.cos(ALPHA), np.sin(ALPHA)))
+    assert loads.cm == pytest.approx(-0.25)
+    sheared = engine.loads(replace(state, u=np.ones_like(state.u), p=0.0 * p))
+    rows = slice(grid.middle - 1, grid.middle + 1)
+    jacobian = 1.0 + np.outer(0.2 * x * (1.0 - x), engine.solver.g.dc[rows])
+    area = engine.solver.blocked * grid.dxf
+    drag = 2.0 / grid.dy[grid.middle] * engine.nu * np.sum(
+        (1.0 / jacobian).sum(axis=1) * area[grid.leading:grid.trailing + 1])
+    assert (sheared.cl, sheared.cd) == pytest.approx(
+        (-2.0 * drag * np.sin(ALPHA), 2.0 * drag * np.cos(ALPHA)))
 
 
 def test_a_uniform_stream_is_kept_on_a_moving_grid():
