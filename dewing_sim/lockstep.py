@@ -38,6 +38,7 @@ class LockStep:
     stale: int = 0                          # commands with another stamp
     rejected: int = 0                       # unusable commands
     unanswered: int = 0                     # steps that could not wait for their command
+    late: int = 0                           # commands that came after their step was made
     plant_seconds: float = 0.0              # wall time spent in the plant
 
     def __post_init__(self):
@@ -109,6 +110,7 @@ class LockStep:
         return dict(
             simulated_time=self.time, v_squared=self.v_squared, steps=self.steps,
             stale=self.stale, rejected=self.rejected, unanswered=self.unanswered,
+            late=self.late,
             clipped=getattr(self.state, 'clipped', 0),
             rtf=self.steps * self.plant.dt / wall if wall else 0.0,
             ms_per_step=1.0e3 * self.plant_seconds / made,

@@ -9,7 +9,8 @@ from rclpy.clock import Clock, ClockType
 
 from dewing_sim.errors import BadInput, RunFailed
 from dewing_sim.lockstep import Deadlines
-from dewing_sim.ros import codec, messages
+from dewing_sim.ros import codec, messages, qos
+from dewing_sim.tempo import Tempo
 
 
 class Loop:
@@ -28,8 +29,9 @@ class Loop:
         self.pending: float | None = None       # V^2 that came while paused
         self.granted = 0                        # steps of a paused run still to be made
         self.began = monotonic()
-        self.deadlines = Deadlines(
-            node.plant.dt / self._run.rate if self._run.mode == 'realtime' else 0.0)
+        rate = self._run.rate if self._run.mode == 'realtime' else 0.0
+        self.deadlines = Deadlines(node.plant.dt / rate if rate else 0.0)
+        self.tempo = Tempo(node.plant.dt, rate)
         self._pace = node.create_timer(self.deadlines.period, self.on_pace,
                                        clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._pace.cancel()
@@ -71,7 +73,8 @@ class Loop:
             return
         try:
             command = self._commands.read(data)
-            if self.locked and not self.lockstep.expects(command.stamp):
+            if (self.locked or command.stamp > self.lockstep.stamp) and (
+                    not self.lockstep.expects(command.stamp)):
                 return
             v_squared = messages.commanded(command)
             self.lockstep.check(v_squared)
@@ -80,32 +83,54 @@ class Loop:
             self._node.status.set(messages.WARN, str(error))
             return
         if not self.locked:
-            self.lockstep.v_squared = v_squared
-            self._node.question.answered |= command.stamp == self.lockstep.stamp
-        elif self.paused and not self.granted:
+            self._apply(command.stamp, v_squared)
+            return
+        self.tempo.answered(monotonic())
+        if self.paused and not self.granted:
             self.pending = v_squared
         else:
             self._advance(v_squared)
 
+    def _apply(self, stamp: int, v_squared: float):
+        """Let V^2 act from now on, whether or not it answers the present measurement."""
+        self.lockstep.v_squared = v_squared
+        ago = self.lockstep.stamp - stamp
+        self.lockstep.late += ago > 0
+        self._node.question.answered |= ago == 0
+        self.tempo.answered(monotonic(), round(ago * 1.0e-9 / self.tempo.dt))
+
     def on_pace(self):
-        """Make the next step of the modes that wait for no command."""
+        """Make the next step of the modes that wait for no command.
+
+        An answer that is there by now is in time, whatever the executor would have called first.
+        """
+        for data in qos.waiting(self._node.command):
+            self.on_command(data)
         if self._node.exit_status is not None:
             return
         if self._node.question.blocked:
             self._node.question.offer()
             return
         if self._run.mode == 'realtime':
-            self.deadlines.begin(monotonic())
+            self._begin_on_time()
             self.lockstep.unanswered += not self._node.question.answered
         self._advance(self.lockstep.v_squared)
+
+    def _begin_on_time(self):
+        now = monotonic()
+        self.tempo.begin(now, self.deadlines.due)
+        self.deadlines.begin(now)
 
     def _advance(self, v_squared: float):
         was_granted, self.pending = self.granted, None
         self.granted = max(was_granted - 1, 0)
         self._node.inputs.take()
         try:
+            if not self.tempo.rate:
+                self.tempo.begin(monotonic())
             self.lockstep.advance(v_squared)
             self._ask()
+            self.tempo.made(monotonic())
         except RunFailed as error:
             self._node.finish(1, str(error))
             return
@@ -140,6 +165,7 @@ class Loop:
     def pause(self, wanted: bool):
         """Hold simulated time, or go on."""
         self.paused = wanted
+        self.tempo.forget()
         if not wanted:
             self._revoke('the run was let go on before they were made')
         if wanted:

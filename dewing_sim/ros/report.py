@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the simulator says of its run: numbers, and what to beware of."""
 
+from time import monotonic
 from typing import Any
 
 from rclpy.clock import Clock, ClockType
 
 from dewing_sim.ros import messages
+from dewing_sim.tempo import Tempo
 
 PERIOD = 1.0                # s, wall
 
@@ -22,8 +24,11 @@ class Report:
     def publish(self):
         """Publish level, sentence and numbers."""
         status, started = self._node.status, self._node.loop.started
-        if not self._speed_told and self._node.lockstep.steps:
-            self._tell_speed()
+        tempo = self._node.loop.tempo
+        tempo.close(monotonic())
+        if not self._speed_told and (
+                tempo.found.rtf_now if tempo.rate else self._node.lockstep.steps):
+            self._tell_speed(tempo)
         if not started:
             absent = self._node.watch.absent
             if absent:
@@ -34,12 +39,14 @@ class Report:
         else:
             status.report()
 
-    def _tell_speed(self):
-        """Log the speed of the first second or so."""
+    def _tell_speed(self, tempo: Tempo):
+        """Log the speed of the first second or so, and in real time what the machine holds."""
         self._speed_told, figures = True, values(self._node)
         self._node.get_logger().info(
             'simulated over wall time: {rtf:.3g}, {ms_per_step:.3g} ms a step and '
-            '{overhead_ms_per_step:.3g} ms beside it'.format(**figures))
+            '{overhead_ms_per_step:.3g} ms beside it'.format(**figures)
+            + (f'; up to run.rate = {tempo.found.largest_rate:.2g} would hold' if tempo.rate
+               else ''))
 
     def _caution(self, started: bool) -> str:
         node = self._node
@@ -48,7 +55,8 @@ class Report:
             return f'{controllers} controllers: the first answer to a measurement counts'
         return (node.telemetry.clock.caution
                 or node.question.gone(node.run.subscribers * started)
-                or node.built.caution(node.lockstep.state))
+                or node.built.caution(node.lockstep.state)
+                or node.loop.tempo.caution)
 
 
 def values(node) -> dict[str, Any]:
@@ -56,5 +64,5 @@ def values(node) -> dict[str, Any]:
     loop, question = node.loop, node.question
     wall = question.asked - loop.began if loop.started else 0.0
     return dict(mode=node.run.mode, **node.lockstep.figures(wall), resent=question.resent,
-                missed_deadlines=loop.deadlines.missed, **node.inputs.figures,
-                **vars(node.built.monitor(node.lockstep.state)))
+                missed_deadlines=loop.deadlines.missed, **loop.tempo.found._asdict(),
+                **node.inputs.figures, **vars(node.built.monitor(node.lockstep.state)))

@@ -237,6 +237,39 @@ def test_real_time_is_paced_and_late_steps_and_answers_are_counted(session, sett
     assert simulator.loop.deadlines.missed > 0 and simulator.lockstep.unanswered == 20
 
 
+class Late(Node):
+    """Answers every measurement one step later than it should."""
+
+    def __init__(self, _parameters=None, **options):
+        super().__init__('late', namespace='dewing', **options)
+        self.out, self.before = self.create_publisher(JointState, 'command', 10), None
+        self.create_subscription(JointState, 'measurement', self.answer, 10)
+
+    def answer(self, message):
+        if self.before is not None:
+            self.out.publish(messages.command(4.0e5, self.before))
+        self.before = message.header.stamp
+
+
+def test_late_answers_act_when_they_come_are_counted_and_warned_of(session, settings):
+    simulator = session.add(SimulatorNode, settings | {'run.mode': 'realtime', 'run.rate': 0.01})
+    session.add(Late)
+    session.spin_until(lambda: 'run.rate = 0.01 is not held' in simulator.reason, PATIENCE)
+    assert simulator.lockstep.v_squared == 4.0e5 and simulator.lockstep.late > 40
+    assert simulator.lockstep.unanswered >= simulator.lockstep.late
+    found = simulator.loop.tempo.found
+    assert found.lap_ms_p50 > 10.0 and 0.0 < found.largest_rate < 0.01
+
+
+def test_in_real_time_an_answer_to_what_is_to_come_is_stale(session, settings):
+    simulator = session.add(SimulatorNode, settings | {'run.mode': 'realtime', 'run.rate': 0.01})
+    script = session.add(Scripted)
+    session.spin_until(lambda: script.measurements, PATIENCE)
+    script.send(3.0e5, messages.to_stamp(10**9))
+    session.spin_until(lambda: simulator.lockstep.stale == 1, PATIENCE)
+    assert simulator.lockstep.v_squared == 0.0
+
+
 def test_a_miss_counts_once_and_is_not_made_up_for():
     deadlines = Deadlines(1.0)
     deadlines.start(0.0)
