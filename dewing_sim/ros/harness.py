@@ -152,7 +152,9 @@ def run(find: Callable[[], Sequence[Callable[[], Node]]],
             makes = find()
             logs.provide()
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-            return _spin([make() for make in makes], stop)
+            nodes = [make() for make in makes]
+            stop.orderly = True
+            return _spin(nodes, stop)
     except (DewingError, OSError, RuntimeError) as error:
         print('dewing:', ' '.join(str(error).split()), file=sys.stderr)
         return 2 if isinstance(error, BadInput) or not rclpy.ok() else 1
@@ -166,7 +168,6 @@ def _spin(nodes: list[Node], stop: Stop) -> int:
     executor, (first, *others) = executor_of(), nodes
     for node in nodes:
         executor.add_node(node)
-    stop.orderly = True
     try:
         with garbage.Deferred() as collector:
             while not stop.asked and _status(first) is None:
