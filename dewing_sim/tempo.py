@@ -14,6 +14,7 @@ import numpy as np
 
 TOLERATED = 0.03            # share of late steps or answers
 SHORTEST = 0.5              # s of a window
+FEWEST = 50                 # steps of a window, for its percentiles to mean something
 OLDEST = 10                 # steps: what is older answers nothing of now
 
 
@@ -77,7 +78,7 @@ class Tempo:
     def close(self, now: float) -> None:
         """Find the figures of the window that ends ``now``, and begin another."""
         steps, laps = self._steps, self._laps
-        if not steps or now - self._window < SHORTEST:
+        if len(steps) < FEWEST or now - self._window < SHORTEST:
             return
         answered = laps if 2 * len(laps) > len(steps) else []
         needed = max(_percentile(series, 100.0 * (1.0 - TOLERATED))
@@ -99,10 +100,12 @@ class Tempo:
     def _sentence(self, share: float, steps: list[float], needed: float) -> str:
         found = self.found
         lap = f', a lap {found.lap_ms_p50:.3g} ms' if found.lap_ms_p50 else ''
+        holds = (f'{found.largest_rate:.2g} would hold, or steps of '
+                 f'{1.0e3 * needed * self.rate:.3g} ms' if found.largest_rate < self.rate
+                 else 'what holds it up is not the run itself')
         return (f'run.rate = {self.rate:g} is not held: {share:.0%} of the steps began late or '
                 f'without their answer, which acts when it comes; a step takes '
-                f'{1.0e3 * _percentile(steps, 50.0):.3g} ms{lap}; {found.largest_rate:.2g} would '
-                f'hold, or steps of {1.0e3 * needed * self.rate:.3g} ms')
+                f'{1.0e3 * _percentile(steps, 50.0):.3g} ms{lap}; {holds}')
 
 
 def _percentile(values: list[float], which: float) -> float:

@@ -71,3 +71,11 @@ def test_a_short_window_and_a_pause_are_left_out():
 
 def test_an_answer_to_what_is_long_past_is_no_lap():
     assert run(Tempo(DT, 1.0), 1000, period=DT, step=0.5e-3, lap=0.7e-3, ago=99).lap_ms_p50 == 0.0
+
+
+def test_a_few_steps_are_no_window_and_stalls_are_not_blamed_on_the_run():
+    tempo = Tempo(DT, 0.01)
+    assert run(tempo, 40, period=0.1, step=2.0e-3, lap=3.0e-3) == Speed()
+    tempo = Tempo(DT, 0.01)
+    run(tempo, 60, period=0.1, step=2.0e-3, lap=3.0e-3, lateness=0.2)
+    assert 'a lap 3 ms; what holds it up is not the run itself' in tempo.caution
