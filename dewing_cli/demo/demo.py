@@ -7,30 +7,27 @@ results are computed from the recorded bags.
 """
 
 import sys
-import tempfile
 from argparse import Namespace
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from subprocess import Popen
 from time import perf_counter
 from typing import Any
 
 from dewing_cli import options, outputs
+from dewing_cli.demo import realtime
 from dewing_cli.demo import results as demo_results
+from dewing_cli.demo.graph import SIMULATOR, graph
 from dewing_cli.progress import bar
 from dewing_cli.results import write_json
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
-from dewing_sim.errors import BadInput, RunFailed
+from dewing_sim.errors import BadInput
 from dewing_sim.files import check_free, is_stream, target_of
-from dewing_sim.machine.signals import Stop, end
+from dewing_sim.machine.signals import Stop
 from dewing_sim.parameters import Case
 from dewing_sim.records import bag
-from dewing_sim.ros import harness
 
 RUNS = ('open_loop', 'closed_loop')
-GLANCE = 0.2                # s between two looks at the processes
 
 
 @dataclass(frozen=True)
@@ -42,6 +39,7 @@ class Demo:
     duration: float
     out: Path
     quiet: bool = False
+    realtime: float = 0.0       # s that the wing for real time is flown for afterwards
 
     def bag(self, name: str) -> Path:
         """Return the bag of one of `RUNS`."""
@@ -59,7 +57,9 @@ def run(arguments: Namespace) -> None:
     case = options.load_case(arguments)
     options.steps_of(arguments.duration, case.numerics.time_step, 's')
     settings = parameters.load(arguments.controller, ControllerSettings)
-    demo = Demo(case, settings, arguments.duration, Path(arguments.out), arguments.quiet)
+    options.within('--realtime', arguments.realtime, 0.0, 1.0e4, 's')
+    demo = Demo(case, settings, arguments.duration, Path(arguments.out), arguments.quiet,
+                arguments.realtime)
     outputs.claim({path.name: path for path in demo.results} | {'--json': arguments.json},
                   arguments.force, options.read_files(arguments.case, arguments.controller))
     metrics = perform(demo, arguments.force)
@@ -67,6 +67,8 @@ def run(arguments: Namespace) -> None:
         write_json(arguments.json, metrics, arguments.force)
     if not arguments.quiet:
         demo_results.print_table(metrics)
+        if 'realtime' in metrics:
+            print('real time:', realtime.sentence(metrics['realtime']))
         print('figure:', demo.out / 'closed_loop.png')
 
 
@@ -90,10 +92,12 @@ def perform(demo: Demo, overwrite: bool = False) -> dict[str, Any]:
             for name in RUNS:
                 record(demo, name, stop)
                 stop.check()
+            flown = realtime.fly(demo.realtime, demo.quiet, stop) if demo.realtime else None
+            stop.check()
     except KeyboardInterrupt:
         report_kept(demo)
         raise
-    return evaluate(demo, began)
+    return evaluate(demo, began, flown)
 
 
 def trim(demo: Demo) -> None:
@@ -110,35 +114,20 @@ def trim(demo: Demo) -> None:
 def record(demo: Demo, name: str, stop: Stop) -> None:
     """Run one of `RUNS` to its end, or until ``stop`` is asked for, and leave its bag."""
     closed = name == 'closed_loop'
-    with ExitStack() as stack:
-        domain = stack.enter_context(harness.reserved_domain())
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix='dewing-demo-')))
-        env = harness.environment(domain, str(folder))
-
-        def start(module: str, settings: dict[str, Any]) -> Popen:
-            log = stack.enter_context(open(folder / f'{module}.txt', 'wb'))
-            process = harness.start_node(module, settings, env, stdout=log, stderr=log)
-            stack.callback(end, process)
-            return process
-
-        start('dewing_sim.ros.recorder', {'output': demo.bag(name).resolve()})
+    with graph() as nodes:
+        nodes.start('dewing_sim.ros.recorder', {'output': demo.bag(name).resolve()})
         if closed:
-            start('dewing_control.node', {
+            nodes.start('dewing_control.node', {
                 name: value for name, value, _ in parameters.leaves(demo.settings)}
                 | {'command.subscribers': 2})
-        simulator = start('dewing_sim.ros.node', {
+        simulator = nodes.start(SIMULATOR, {
             'case': (demo.out / 'case.yaml').resolve(), 'run.duration': demo.duration,
             'run.mode': 'lockstep' if closed else 'free', 'run.subscribers': 2 if closed else 1})
-        session = stack.enter_context(harness.Session(domain))
+        session = nodes.session()
         clock = session.watch_clock()
         with bar(name.replace('_', ' '), quiet=demo.quiet) as show:
-            while simulator.poll() is None and not stop.asked:
-                session.executor.spin_once(timeout_sec=GLANCE)
-                show(clock.time, demo.duration, clock.time)
-        if simulator.poll():
-            said = (folder / 'dewing_sim.ros.node.txt').read_text('utf-8', 'replace')
-            lines = said.strip().splitlines()
-            raise RunFailed(f"{name}: {lines[-1] if lines else 'the simulator failed'}")
+            nodes.wait(name, simulator, session, stop,
+                       lambda: show(clock.time, demo.duration, clock.time))
 
 
 def report_kept(demo: Demo) -> None:
@@ -151,12 +140,14 @@ def report_kept(demo: Demo) -> None:
         print(f'dewing: kept {demo.bag(name)} up to {end:.4f} s', file=sys.stderr)
 
 
-def evaluate(demo: Demo, began: float) -> dict[str, Any]:
-    """Write figure and metrics of the recorded bags; return the metrics."""
+def evaluate(demo: Demo, began: float, flown: dict[str, Any] | None) -> dict[str, Any]:
+    """Write figure and metrics of the recorded bags and of the real-time wing; return them."""
     runs = {name: demo_results.Run.read(demo.bag(name)) for name in RUNS}
     metrics = demo_results.metrics(runs, demo.case, demo.settings.command.voltage_limit,
                                    demo.duration)
     demo_results.draw(runs, demo.settings.reference.target - 1.0, demo.out / 'closed_loop.png')
+    if flown:
+        metrics['realtime'] = flown
     metrics['seconds'] = perf_counter() - began
     write_json(demo.out / 'metrics.json', metrics)
     return metrics

@@ -76,15 +76,20 @@ def assert_as_offline(folder, steps):
 
 @pytest.mark.slow
 def test_the_demo_leaves_bags_figure_and_metrics(tmp_path):
-    with start(tmp_path, '--duration', '0.02', '--json', str(tmp_path / 'copy.json')) as process:
+    with start(tmp_path, '--duration', '0.02', '--realtime', '0.2',
+               '--json', str(tmp_path / 'copy.json')) as process:
         said, complaint = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, complaint
     assert 'mean camber change' in said and 'closed_loop.png' in said
+    assert 'real time: 0.2 s of the case realtime in two processes' in said
     metrics = json.loads((tmp_path / 'demo' / 'metrics.json').read_text())
     assert metrics == json.loads((tmp_path / 'copy.json').read_text())
     assert metrics['steps'] == 400 and metrics['steps_lost'] == 0
     assert metrics['closed_loop']['v_min'] >= 0.0
     assert metrics['closed_loop']['camber_mean'] > 0.0 > metrics['open_loop']['camber_mean']
+    flown = metrics['realtime']
+    assert (flown['case'], flown['steps'], flown['clipped']) == ('realtime', 400, 0)
+    assert flown['rtf'] > 0.0 and flown['camber_mean'] == pytest.approx(0.10, abs=0.03)
     assert (tmp_path / 'demo' / 'closed_loop.png').read_bytes().startswith(b'\x89PNG')
     with start(tmp_path) as again:
         complaint = again.communicate(timeout=PATIENCE)[1]
