@@ -36,6 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                           ('delay', 'steps by which V^2 takes effect late')):
         group.add_argument(f'--{name}', type=int, metavar='STEPS',
                            help=f'{meaning} (default: as in the settings)')
+    group.add_argument('--generations', type=int, default=25, metavar='N',
+                       help='length of the search (default: 25)')
     for name, default, help in (
             ('ms', Bounds.sensitivity, 'largest peak of the sensitivity'),
             ('saturation', Bounds.saturation, 'largest share of the time with V^2 at zero'),
@@ -60,7 +62,8 @@ def run(arguments: argparse.Namespace) -> None:
     with refusing(settings.kind):
         design = Design.of(model, settings.reference.output, settings.command.period_steps)
     with bar('tuning', 'generations', arguments.quiet) as show:
-        judged = tune(settings, built.identity, design, bounds, progress=show)
+        judged = tune(settings, built.identity, design, bounds,
+                      generations=arguments.generations, progress=show)
     folder = Path(arguments.out)
     model.save(folder / 'model.npz', arguments.force)
     metrics = _verify(arguments, built, model, design, judged)
@@ -94,6 +97,7 @@ def _check(arguments: argparse.Namespace) -> tuple[Any, Any]:
     settings = parameters.load(arguments.settings, ControllerSettings, changes)
     ranges_of(settings.kind)
     options.within('--duration', arguments.duration, 0.01, 100.0, 's')
+    options.within('--generations', arguments.generations, 1, 10_000, '')
     bounds = Bounds(options.within('--ms', arguments.ms, 1.05, 100.0, ''),
                     options.within('--saturation', arguments.saturation, 0.0, 1.0, ''),
                     options.within('--noise-gain', arguments.noise_gain, 1.0e-3, 1.0e6, ''),

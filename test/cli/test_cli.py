@@ -107,6 +107,7 @@ def fails(capsys, arguments, status: int = 2) -> str:
     (['plate', '--alpha', '4', '--skip', '-1'], '--skip -1 is out of range'),
     (['simulate', '--controller', 'late', '--delay', '-1'], '--delay -1 is out of range'),
     (['simulate', '--controller', 'late', '--jitter', '2'], '--jitter 2 is out of range'),
+    (['tune', '--generations', '0'], '--generations 0 is out of range'),
     (['tune', '--delay', '-1'], 'command.delay_steps = -1 is out of range'),
     (['demo', '--case', 'papier'], "'papier' is not a shipped configuration"),
     (['demo', '--controller', 'missing.yaml'], 'missing.yaml: no such file'),
