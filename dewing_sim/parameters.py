@@ -106,7 +106,7 @@ def load(name: str, schema: type[Section] = Case, changes: Mapping[str, Any] | N
 def _named_for(node: str, name: str) -> str:
     """Return the full name of a shipped configuration for ``node``, if there is such a one."""
     full = f'{node}_{name}'
-    there = name.isidentifier() and (_config_folder() / f'{full}.yaml').is_file()
+    there = str(name).isidentifier() and (_config_folder() / f'{full}.yaml').is_file()
     return full if there else name
 
 
