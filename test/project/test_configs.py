@@ -36,6 +36,8 @@ def test_a_word_is_enough_for_a_shipped_controller():
         assert (parameters.load(word, ControllerSettings)
                 == parameters.load(f'controller_{word}', ControllerSettings))
     assert parameters.load('realtime') == parameters.load('realtime', Case)     # the case
+    path = CONFIG / 'controller_late.yaml'
+    assert parameters.load(path, ControllerSettings) == parameters.load('late', ControllerSettings)
     with pytest.raises(BadInput, match="'calm' is not a shipped configuration"):
         parameters.load('calm', ControllerSettings)
 
