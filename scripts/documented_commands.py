@@ -58,7 +58,10 @@ LONG_IN_TEXT = (
     'dewing verify --out docs --force', 'dewing material --coupled',
     'dewing bench --presets standard --set membrane.element=solid --set membrane.elements=400',
     'dewing bench --engine conformal', 'dewing tune --kind lqg', 'dewing tune --noise-gain 40',
-    'dewing compare --duration 0.4',
+    'dewing compare --duration 0.4', 'dewing simulate --case realtime --duration 1',
+    'dewing tune --case realtime --delay 1 --generations 40',
+    'dewing compare --case realtime --settings realtime'
+    ' --scenarios late0,late1,late2,jitter,alpha8_late1 --duration 0.8',
     'dewing compare --scenarios target_097 --controllers pid_tuned,lqg,mpc --duration 1.0'
     ' --jobs 1',
 )
