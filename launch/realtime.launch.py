@@ -12,6 +12,7 @@ from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 
 ONE = Path(__file__).with_name('dewing.launch.py')
+GAINS = ONE.parents[1] / 'config' / 'controller_realtime.yaml'     # which bear late commands
 ARGUMENTS = (('case', 'realtime', 'shipped case or YAML file'),
              ('mode', 'realtime', 'lockstep, realtime or free'),
              ('rate', '1.0', 'simulated over wall time'),
@@ -23,4 +24,6 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription([
         *(DeclareLaunchArgument(name, default_value=default, description=about)
           for name, default, about in ARGUMENTS),
+        DeclareLaunchArgument('gains', default_value=str(GAINS),
+                              description='parameter file for the controller'),
         IncludeLaunchDescription(PythonLaunchDescriptionSource(str(ONE)))])
