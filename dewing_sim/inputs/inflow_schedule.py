@@ -5,6 +5,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -79,7 +80,7 @@ class InflowSchedule:
             name: Differentiated(_dimensionless(function, unit, scales.time), step)
             for name, (function, unit) in units.items() if function is not None})
 
-    @property
+    @cached_property
     def is_steady(self) -> bool:
         """Whether nothing ever disturbs the stream."""
         return (self.gust_course.shape == self.motion_course.shape == 'none'

@@ -110,10 +110,8 @@ class Conformal(Fluid):
         edges = self.edges.near(around.map)
         motion = frame.wall_motion(around, wall.velocity, state.velocity, state.velocity_before,
                                    self.dt)
-        past = step.Past(state.w, state.w_before, state.q, state.q_before, state.psi,
-                         state.psi_before, state.circulation)
         w, q, psi, pressure, circulation, slip = step.advance(
-            self._resident, edges, *past, *around.map, around.shape_rate, around.scale_rate,
+            self._resident, edges, *state.past, *around.map, around.shape_rate, around.scale_rate,
             *frame.stream(around.map), *motion)
         self._require_hold(slip, state)
         fields = Predicted(before=state, around=around, w=w, q=q, psi=psi, pressure=pressure,
@@ -198,7 +196,8 @@ class Conformal(Fluid):
 
 def _require_pinned(wall: Wall, kind: type[DewingError] = BadInput) -> None:
     """Raise an error of ``kind`` unless the edges are at rest on the chord."""
-    most = max(map(abs, (wall.height[0], wall.height[-1], *wall.edge_velocity)))
+    height, (leading, trailing) = wall.height, wall.edge_velocity
+    most = max(abs(height[0]), abs(height[-1]), abs(leading), abs(trailing))
     if most > PINNED:
         raise kind('the conformal engine needs a membrane whose edges stay at y = 0; here one '
                    f'leaves it by {most:.2g} chords')

@@ -39,6 +39,12 @@ class FlowState:
     slip: float                     # largest that the last step shed, in U
 
     @property
+    def past(self) -> tuple:
+        """What `step.advance` takes of it: a `step.Past`."""
+        return (self.w, self.w_before, self.q, self.q_before, self.psi, self.psi_before,
+                self.circulation)
+
+    @property
     def map(self) -> Map:
         """The present map."""
         return Map(self.shape, self.edges)
