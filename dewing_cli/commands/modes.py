@@ -122,6 +122,7 @@ def _write(arguments: argparse.Namespace, wing: Any, found: Any) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with new_file(folder / 'modes.npz', arguments.force) as file:
         np.savez_compressed(file, case_yaml=parameters.to_yaml(wing.case),
+                            weight_of_motion=found.propagator.weight,
                             vectors=np.array([mode.vector for mode in found.modes]),
                             **{name: np.array([mode.metrics()[name] for mode in found.modes])
                                for name in (found.modes[0].metrics() if found.modes else ())})

@@ -74,16 +74,18 @@ def steady(wing: Wing, guess: State) -> State:
     """
     state = replace(guess, step=0)
     steps = max(1, round(HORIZON * wing.scales.time / wing.dt))
-    size = of_kick(wing, state, max(1, round(BRIEF / wing.dt)))[0].size
+    kicked = of_kick(wing, state, max(1, round(BRIEF / wing.dt)))[0]
     for _correction in range(NEWTON):
-        after = Propagator(wing, state, steps).march(state)
-        residual = Coordinates(state).vector(after) - Coordinates(state).vector(state)
+        propagator = replace(kicked, base=state, steps=steps)
+        vector = propagator.coordinates.vector
+        after = propagator.march(state)
+        residual = vector(after) - vector(state)
         norm = float(np.linalg.norm(residual))
-        if norm < STEADY * size:
+        if norm < STEADY * kicked.size:
             return replace(after, step=0)
-        state = _corrected(Propagator(wing, state, steps, size), residual)
+        state = _corrected(propagator, residual)
     raise NotConverged(f'the steady wing: after {NEWTON} corrections it still moves by '
-                       f'{norm / size:.3g} of a perturbation in {HORIZON:g} c/U')
+                       f'{norm / kicked.size:.3g} of a perturbation in {HORIZON:g} c/U')
 
 
 def _corrected(propagator: Propagator, residual: np.ndarray) -> State:

@@ -3,7 +3,8 @@
 """A state of the coupled wing as one vector, and back: what perturbations are made of.
 
 The entries are those of flow, motion and jump history that act on the next step, in the units of
-the state; complex ones count as two. What a flow state only reports, its `reports`, is left out.
+the state, those of the motion times a weight; complex ones count as two. What a flow state only
+reports, its `reports`, is left out.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -16,13 +17,19 @@ from dewing_sim.state import State
 
 @dataclass(frozen=True, eq=False)
 class Coordinates:
-    """The vectors about ``base``: `vector` and `state` undo each other."""
+    """The vectors about ``base``: `vector` and `state` undo each other.
+
+    A norm of vectors adds flow and membrane, whose numbers differ by orders of magnitude, hence
+    the ``weight`` of the membrane's.
+    """
 
     base: State
+    weight: float = 1.0
 
     def vector(self, state: State) -> np.ndarray:
         """Return the entries (n,) of a ``state`` of the form of the base."""
-        return np.concatenate([_real(value) for _owner, _name, value in _entries(state)])
+        return np.concatenate([self._weight(owner) * _real(value)
+                               for owner, _name, value in _entries(state)])
 
     def state(self, vector: np.ndarray) -> State:
         """Return the base with the entries of ``vector`` (n,)."""
@@ -30,10 +37,20 @@ class Coordinates:
         first = 0
         for owner, name, value in _entries(self.base):
             stop = first + _real(value).size
-            changed[owner][name] = _like(value, vector[first:stop])
+            changed[owner][name] = _like(value, vector[first:stop] / self._weight(owner))
             first = stop
         return replace(self.base, flow=replace(self.base.flow, **changed['flow']),
                        motion=replace(self.base.motion, **changed['motion']), **changed[''])
+
+    def balanced(self, vector: np.ndarray) -> 'Coordinates':
+        """Return the coordinates in which flow and motion of ``vector`` (n,) are equally large."""
+        moves = np.concatenate([np.full(_real(value).size, owner == 'motion')
+                                for owner, _name, value in _entries(self.base)])
+        ratio = np.linalg.norm(vector[~moves]) / np.linalg.norm(vector[moves])
+        return replace(self, weight=self.weight * float(ratio))
+
+    def _weight(self, owner: str) -> float:
+        return self.weight if owner == 'motion' else 1.0
 
 
 def _entries(state: State) -> list[tuple[str, str, Any]]:

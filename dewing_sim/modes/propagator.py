@@ -19,7 +19,7 @@ from dewing_sim.modes.coordinates import Coordinates
 from dewing_sim.state import State
 from dewing_sim.wing import Wing
 
-KICK = 20.0                     # V^2 s, which starts a perturbation: 200 V for half a ms
+KICK = 100.0                    # V^2 s, which starts a perturbation: 450 V for half a ms
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +30,12 @@ class Propagator:
     base: State
     steps: int
     size: float = 0.0
+    weight: float = 1.0         # of the membrane in vectors
 
     @property
     def coordinates(self) -> Coordinates:
         """The vectors about the base."""
-        return Coordinates(self.base)
+        return Coordinates(self.base, self.weight)
 
     @property
     def period(self) -> float:
@@ -79,6 +80,13 @@ class Propagator:
 
 def of_kick(wing: Wing, base: State, steps: int, kick: float = KICK,
             ) -> tuple[Propagator, np.ndarray]:
-    """Return the propagator for perturbations of the size of a kick, and that kick (n,)."""
+    """Return the propagator for perturbations of the size of a kick, and that kick (n,).
+
+    Its vectors weigh the membrane so that a kick moves flow and membrane equally far: else a mode
+    of one of them would move it too much, or too little for the solvers to see.
+    """
     first = Propagator(wing, base, steps).kicked(kick)
-    return Propagator(wing, base, steps, float(np.linalg.norm(first))), first
+    balanced = Coordinates(base).balanced(first)
+    vector = balanced.vector(Coordinates(base).state(first + Coordinates(base).vector(base)))
+    vector = vector - balanced.vector(base)
+    return Propagator(wing, base, steps, float(np.linalg.norm(vector)), balanced.weight), vector

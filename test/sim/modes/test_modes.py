@@ -47,7 +47,7 @@ def test_the_first_mode_is_what_the_wing_rings_with(settled):
     wing, base, found = settled
     mode = max(found.modes, key=lambda each: each.observability['camber_mean'])
     rate = mode.growth + 2.0j * np.pi * mode.frequency
-    coordinates, size = Coordinates(base), found.propagator.size
+    coordinates, size = found.propagator.coordinates, found.propagator.size
     step = size / np.linalg.norm(mode.vector) * mode.vector
     state = coordinates.state(coordinates.vector(base) + step.real)
     seen, still = [], base
