@@ -47,7 +47,6 @@ class RecorderNode(Node):
         messages.declare(self, self.settings, read_only=True)
         self.exit_status: int | None = None
         self.reason = ''
-        self.bag = bag.BagWriter(self.settings.output)
         self._listener = Node(      # in no executor
             'recorder_queues', namespace=self.get_namespace(), context=self.context,
             use_global_arguments=False, enable_rosout=False, start_parameter_services=False)
@@ -56,6 +55,8 @@ class RecorderNode(Node):
         self.create_timer(DISCOVERY_PERIOD, self._discover, clock=steady)
         self.create_timer(WRITE_PERIOD, self._write, clock=steady)
         self.create_timer(FLUSH_PERIOD, self._flush, clock=steady)
+        # Last: from here on a signal finds a node that closes it.
+        self.bag = bag.BagWriter(self.settings.output)
 
     def _discover(self):
         """Subscribe to what is new, to measurement last: the simulator waits for its listeners.
