@@ -61,6 +61,8 @@ def nodes(context: LaunchContext) -> list:
                           for group in [*groups, *[['recorder']] * recorded]]
     ends = [EmitEvent(event=ShutdownProcess(process_matcher=matches_action(each)))
             for each in others]
+    if not others:                  # launch knows no handler that does nothing
+        return [simulator]
     return [*others, simulator,
             RegisterEventHandler(OnProcessExit(target_action=simulator, on_exit=ends))]
 

@@ -146,12 +146,16 @@ def launch(ros, *words, **options):
 @pytest.mark.parametrize('words', [
     ('dewing.launch.py', 'duration:=0.02', 'bag:=run.mcap'),
     ('dewing.launch.py', 'duration:=0.02', 'bag:=run.mcap', 'composed:=true', 'namespace:=left'),
+    ('dewing.launch.py', 'duration:=0.02', 'composed:=true'),
     ('realtime.launch.py', 'duration:=0.02', 'rate:=0.5', 'case:=paper', 'bag:=run.mcap')])
-def test_a_run_is_recorded_and_all_processes_end_well(ros, words):
+def test_all_processes_end_well_and_a_bag_holds_the_run(ros, words):
     from dewing_sim.records import bag
     process = launch(ros, *words)
     said, _ = process.communicate(timeout=300)
     assert process.returncode == 0 and 'process has died' not in said, said
+    assert 'ERROR' not in said and 'finished at 0.02 s' in said, said
+    if 'bag:=run.mcap' not in words:
+        return
     namespace = 'left' if 'namespace:=left' in words else 'dewing'
     measured = bag.series(ros[1].parent / 'run.mcap', f'/{namespace}/measurement')
     assert len(measured['time']) == 201
