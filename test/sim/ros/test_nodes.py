@@ -118,7 +118,8 @@ def test_a_node_ends_in_order_with_a_parent_that_is_killed(tmp_path):
     with harness.reserved_domain() as domain, started(
             [sys.executable, '-c', PARENT, str(domain)], cwd=tmp_path,
             env=environment) as parent:
-        wait_until((tmp_path / 'run.mcap').exists, parent)
+        bag_file = tmp_path / 'run.mcap'        # its first flush is that of a node that spins
+        wait_until(lambda: bag_file.exists() and bag_file.stat().st_size > 0, parent)
         kill(parent)
         node = int((tmp_path / 'pid').read_text())
         wait_until(lambda: not psutil.pid_exists(node))
