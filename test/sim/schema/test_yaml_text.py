@@ -53,3 +53,12 @@ def test_a_large_value_is_shown_in_brief():
     assert parameters.shown({'a': 1.0}) == "{'a': 1.0}"
     assert len(parameters.shown([[['x' * 9000] * 900] * 900] * 900)) < 5000
     assert parameters.shown(10**5000) == '<int>'
+
+
+@pytest.mark.parametrize('strict', [False, True])
+def test_no_number_is_to_the_base_of_sixty_or_eight(strict):
+    """YAML 1.1 has numbers to the base of sixty, 1:30.5, and of eight, 0100."""
+    read = yaml_text.read('[1:30.5, 1:30, 0100, -0_7, 1.5, 1_000, 0, 0.5, -2, 0x10, 1.0e+3, .inf]',
+                          'no list', strict)
+    assert read == ['1:30.5', '1:30', '0100', '-0_7', 1.5, 1000, 0, 0.5, -2, 16, 1000.0,
+                    float('inf')]
