@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The schema of an identification, `config/sysid.yaml`."""
 
+import os
 from dataclasses import dataclass
 
+from dewing_sim.errors import BadInput
 from dewing_sim.parameters import choice, count, real, text
 from dewing_sim.schema.relations import Bound
 
@@ -63,7 +65,10 @@ class Settings:
 
 @dataclass(frozen=True)
 class NodeSettings:
-    """What the node does beside identifying; given to it together with `Settings`."""
+    """What the node does beside identifying; given to it together with `Settings`.
+
+    Raises `BadInput` if model and experiments are to go to one file.
+    """
 
     output: str = text('npz file of the model; it must not exist, none is written if empty')
     records: str = text('npz file of the experiments; none is written if empty')
@@ -71,6 +76,11 @@ class NodeSettings:
     afterwards: str = choice('what the node does with the model published', 'stay', 'exit')
     patience: float = real('s', 'wall time without a measurement after which the node gives up',
                            0.1, 1.0e6)
+
+    def __post_init__(self):
+        """Compare the files, links followed."""
+        if self.records and os.path.realpath(self.output) == os.path.realpath(self.records):
+            raise BadInput(f'output and records are both {self.output}: name another file for one')
 
 
 NODE_DEFAULTS = dict(output='model.npz', records='', begin='at_start', afterwards='stay',

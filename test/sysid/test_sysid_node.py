@@ -228,6 +228,12 @@ def test_experiments_outlast_a_suspended_machine(session, model, tmp_path, monke
     assert node.found is not None, node.reason
 
 
+def test_model_and_records_in_one_file_are_refused(session, model, tmp_path):
+    with pytest.raises(BadInput, match='output and records are both .*same.npz'):
+        start(session, model, tmp_path, output=str(tmp_path / 'same.npz'),
+              records=str(tmp_path / '.' / 'same.npz'))
+
+
 def test_an_existing_model_is_not_written_over(session, model, tmp_path):
     (tmp_path / 'model.npz').write_text('precious')
     with pytest.raises(BadInput, match='exists'):
