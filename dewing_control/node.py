@@ -188,4 +188,5 @@ def settings_of(node: Node) -> ControllerSettings:
 
 def main(args=None) -> int:
     """Run the controller until a signal asks for the end; return the exit status."""
-    return harness.main(ControllerNode, args)
+    return harness.main(ControllerNode, args,
+                        lambda: [parameters.load('controller', ControllerSettings)])

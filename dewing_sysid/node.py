@@ -26,7 +26,7 @@ from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
 from dewing_sysid.experiment import save_records
 from dewing_sysid.identify import Identification, concerns, identify
-from dewing_sysid.settings import NODE_DEFAULTS, NodeSettings, Settings
+from dewing_sysid.settings import NODE_DEFAULTS, NodeSettings, Settings, shipped
 
 WATCH_PERIOD = 0.1          # s, wall
 FAREWELL = 1.0              # s, longest wait for the last reset
@@ -247,4 +247,4 @@ class SysidNode(Node):
 
 def main(args=None) -> int:
     """Run the identification until its end or a signal that asks for it; return the status."""
-    return harness.main(SysidNode, args)
+    return harness.main(SysidNode, args, shipped)

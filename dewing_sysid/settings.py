@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 
 from dewing_sim.errors import BadInput
-from dewing_sim.parameters import choice, count, real, text
+from dewing_sim.parameters import choice, count, load, real, text
 from dewing_sim.schema.relations import Bound
 
 
@@ -85,3 +85,8 @@ class NodeSettings:
 
 NODE_DEFAULTS = dict(output='model.npz', records='', begin='at_start', afterwards='stay',
                      patience=30.0)
+
+
+def shipped() -> tuple[NodeSettings, Settings]:
+    """Return the parameters of the node."""
+    return NodeSettings(**NODE_DEFAULTS), load('sysid', Settings)

@@ -19,7 +19,7 @@ import random
 import socket
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import inf
 from pathlib import Path
@@ -37,7 +37,7 @@ from rosgraph_msgs.msg import Clock
 from dewing_sim.errors import BadInput, DewingError, RunFailed
 from dewing_sim.machine import garbage
 from dewing_sim.machine.signals import Stop
-from dewing_sim.ros import logs
+from dewing_sim.ros import logs, usage
 
 SPIN = 0.2                      # s, longest time without a look at signals and conditions
 DOMAINS = range(1, 102)         # usable on every system without clashing with ephemeral ports
@@ -64,9 +64,8 @@ def executor_of(context: Context | None = None) -> Executor:
 
 def overrides(parameters: Mapping[str, Any] | None) -> dict[str, Any]:
     """Return node options that give ``parameters`` (dotted names) as if on the command line."""
-    return dict(automatically_declare_parameters_from_overrides=True,
-                parameter_overrides=[Parameter(name, value=value)
-                                     for name, value in (parameters or {}).items()])
+    return dict(automatically_declare_parameters_from_overrides=True, parameter_overrides=[
+        Parameter(name, value=value) for name, value in (parameters or {}).items()])
 
 
 class Session:
@@ -130,14 +129,16 @@ class ClockWatch(Node):
         self.time = message.clock.sec + 1.0e-9 * message.clock.nanosec
 
 
-def main(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
+def main(make: Callable[[], Node], args: Sequence[str] | None = None,
+         shipped: Callable[[], Iterable[Any]] = tuple) -> int:
     """Spin the node of this process until it ends or a signal comes; return the exit status.
 
     The node may have ``exit_status`` (None while it runs) and ``reason``, and ``interrupt()``,
     which is called on SIGINT, SIGTERM and SIGHUP while ROS still works. Bad parameters give one
-    sentence on standard error and status 2, failures status 1.
+    sentence on standard error and status 2, failures status 1. ``--help`` lists ``shipped()``.
     """
-    return run(lambda: [make], args)
+    status = usage.answer(make, args, shipped)
+    return run(lambda: [make], args) if status is None else status
 
 
 def run(find: Callable[[], Sequence[Callable[[], Node]]],

@@ -20,7 +20,7 @@ from dewing_sim.ros.input_topics import InputTopics
 from dewing_sim.ros.loop import Loop
 from dewing_sim.ros.question import Question
 from dewing_sim.ros.services import Services
-from dewing_sim.ros.simulator_parameters import settings_of
+from dewing_sim.ros.simulator_parameters import settings_of, shipped
 from dewing_sim.ros.status import Status
 from dewing_sim.ros.telemetry import Telemetry
 from dewing_sim.ros.transforms import Transforms
@@ -98,4 +98,4 @@ class SimulatorNode(Node):
 
 def main(args=None) -> int:
     """Run the simulator until its end or a signal that asks for it; return the exit status."""
-    return harness.main(SimulatorNode, args)
+    return harness.main(SimulatorNode, args, shipped)

@@ -119,4 +119,4 @@ class RecorderNode(Node):
 
 def main(args=None) -> int:
     """Record until a signal asks for the end; return the exit status."""
-    return harness.main(RecorderNode, args)
+    return harness.main(RecorderNode, args, lambda: [RecorderSettings(**DEFAULTS)])

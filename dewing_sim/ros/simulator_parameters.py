@@ -20,3 +20,9 @@ def settings_of(node: Node) -> tuple[SimulatorSettings, Case]:
     messages.declare(node, settings, read_only=True, live=LIVE)
     messages.declare(node, case, read_only=True, open_fields=messages.constants(case))
     return settings, case
+
+
+def shipped() -> tuple[SimulatorSettings, Case]:
+    """Return the parameters of the node, and of the case it takes if none is named."""
+    settings = parameters.load('simulator', SimulatorSettings)
+    return settings, parameters.load(settings.case)
