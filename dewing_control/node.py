@@ -22,6 +22,8 @@ from dewing_sim.ros import codec, given_parameters, harness, messages, qos
 from dewing_sim.ros.inbox import Inbox
 from dewing_sim.ros.status import Status
 
+RELEASED = 'released: another node has its turn'
+
 
 class ControllerNode(Node):
     """A supervised controller driven by measurements alone; it never looks at a clock.
@@ -54,6 +56,7 @@ class ControllerNode(Node):
         self._layout = codec.layout(messages.COMMANDED, 'effort')
         self._state = StateTopic(self)
         self.create_service(SetBool, '~/enable', self._on_enable)
+        self.create_service(SetBool, '~/release', self._on_release)
         self._attended = False                      # all listeners of command were there
         self._heard = False                         # a measurement came in the last second
         self.create_timer(1.0, self._watch, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -95,15 +98,17 @@ class ControllerNode(Node):
 
     def _ready(self) -> bool:
         """Return whether there is a law and everybody listens to its answers."""
-        return self._law is not None and not self._absent() and self.exit_status is None
+        return (self._law is not None and self._command is not None and not self._absent()
+                and self.exit_status is None)
 
     def _absent(self) -> int:
         """Return how many listeners of command are waited for, none once all have been there."""
-        if not self._attended:
+        if not self._attended and self._command is not None:
             wanted = self.settings.command.subscribers
             absent = max(wanted - self._command.get_subscription_count(), 0)
             self._attended = not absent
-        return 0 if self._attended else absent
+            return absent
+        return 0
 
     def _watch(self):
         """Look for a measurement that nobody told of, and say what is waited for."""
@@ -111,7 +116,7 @@ class ControllerNode(Node):
         if self._law is not None and self._absent():
             self.status.set(messages.OK, f'waiting for {self._absent()} of '
                             f'{self.settings.command.subscribers} listeners of command')
-        elif self._law is not None and self.status.level == messages.OK and not self._heard:
+        elif self._ready() and self.status.level == messages.OK and not self._heard:
             self.status.set(messages.OK, 'waiting for a measurement')
         self._heard = False
         self.status.report()
@@ -157,8 +162,23 @@ class ControllerNode(Node):
         response.success, response.message = True, 'enabled' if request.data else 'disabled'
         return response
 
+    def _on_release(self, request, response):
+        """Leave the wing to another node, which is to command it in its turn, or take it again."""
+        if request.data and self._command is not None:
+            self.destroy_publisher(self._command)
+            self._command = None
+        elif not request.data and self._command is None:
+            self._command = self.create_publisher(JointState, 'command', qos.LOOP)
+            self._attended = False
+        self._memory, self._stamp = None, -1
+        self._say_running()
+        response.success, response.message = True, 'released' if request.data else 'taken again'
+        return response
+
     def _say_running(self):
-        if self._law is not None:
+        if self._command is None:
+            self.status.set(messages.OK, RELEASED)
+        elif self._law is not None:
             self.status.set(messages.OK, 'running' if self._enabled else 'disabled: V^2 is zero')
 
     def _values(self) -> dict[str, Any]:

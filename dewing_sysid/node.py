@@ -21,6 +21,7 @@ from dewing_sim.ros import messages as common
 from dewing_sim.ros.awake import Awake
 from dewing_sim.ros.rest import Rest
 from dewing_sim.ros.status import Status
+from dewing_sim.ros.turn import ASKED, Turn
 from dewing_sim.ros.watchdog import Watchdog
 from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
@@ -67,7 +68,7 @@ class SysidNode(Node):
     reason = property(lambda self: self.status.sentence, doc='The sentence of the diagnostics.')
 
     def _connect(self):
-        self._command = self.create_publisher(JointState, 'command', qos.LOOP)
+        self._turn = Turn(self)
         self._progress = self.create_publisher(Float64, '~/progress', qos.EVENTS)
         self._announcement = messages.Announcement(self)
         self._rest = Rest(self, self._on_rest)
@@ -124,18 +125,16 @@ class SysidNode(Node):
             return 'experiments are already under way'
         if self._identity is None or not self._rest.there:
             return 'the simulator is not there'
-        if self.count_publishers('command') > 1:
-            return 'another controller publishes commands: stop it first'
-        return None
+        return self._turn.obstacle
 
     def _begin(self):
         self._wanted = False
         try:
-            planned = plan.make(self.settings, self._identity)
+            self._campaign = Campaign(plan.make(self.settings, self._identity))
         except BadInput as error:
             self._finish(1, str(error))
             return
-        self._campaign = Campaign(planned)
+        self._turn.take()
         self._begin_run()
 
     def _begin_run(self):
@@ -167,7 +166,7 @@ class SysidNode(Node):
         if campaign.run_complete:
             self._next_run()
         elif v_squared is not None:
-            qos.publish(self._command, self._layout.encode(stamp, (v_squared,)))
+            self._turn.publish(self._layout.encode(stamp, (v_squared,)))
 
     def _show_progress(self):
         share = self._campaign.progress
@@ -207,18 +206,19 @@ class SysidNode(Node):
 
     def _restore(self):
         self._campaign, self._shown = None, -1.0
+        self._turn.leave()
         return self._rest.leave()
 
     def _on_start(self, _request, response):
         obstacle = self._obstacle()
-        response.success, response.message = obstacle is None, obstacle or 'started'
-        if response.success:
+        self._wanted = obstacle == ASKED
+        response.success, response.message = self._wanted or not obstacle, obstacle or 'started'
+        if not obstacle:
             self._begin()
         return response
 
     def _on_stop(self, _request, response):
-        response.success = self._campaign is not None
-        response.message = 'no experiment is under way'
+        response.success, response.message = bool(self._campaign), 'no experiment is under way'
         if response.success:
             response.message = f'run {self._campaign.run!r} stopped, the simulator is reset'
             self._restore()
@@ -229,7 +229,7 @@ class SysidNode(Node):
         if self._campaign:
             self._restore()
         self.status.set(common.ERROR if status else common.OK, sentence)
-        qos.deliver(each for each in self.publishers if each is not self._command)
+        qos.deliver(self.publishers)
         self.exit_status = status
 
     def interrupt(self):

@@ -135,7 +135,7 @@ class Loop:
             self._node.finish(1, str(error))
             return
         if self._node.status.level != messages.OK and not self._node.question.blocked:
-            self._say_state()
+            self.say_state()
         if self._run.save_steps and self.lockstep.steps % self._run.save_steps == 0:
             self._node.served.save()
         if was_granted == 1:
@@ -154,11 +154,12 @@ class Loop:
         self._node.inputs.publish()
         self._node.transforms.publish(self.lockstep)
 
-    def _say_state(self):
+    def say_state(self):
+        """Say whether the run goes on or is paused."""
         self._node.status.set(messages.OK, 'paused' if self.paused else 'running')
 
     def _resume(self):
-        self._say_state()
+        self.say_state()
         if not (self.locked or self.paused):
             self.wind_up()
 

@@ -6,7 +6,7 @@ from time import monotonic
 
 from rclpy.clock import Clock, ClockType
 
-from dewing_sim.ros import messages, qos, watchdog
+from dewing_sim.ros import messages, qos, turn, watchdog
 from dewing_sim.ros.awake import Awake
 from dewing_sim.ros.watchdog import Watchdog
 
@@ -22,6 +22,7 @@ class Watch:
         self._awake = Awake()
         self._asked = (0.0, 0.0)    # when the measurement in force was: by the clock, and awake
         self._held = 0.0            # when that was asked whose silence was reported
+        self._idle = False          # nobody commands, and somebody stands by
         self._listeners = -1        # to the telemetry, when last looked at
         self._watchdog = Watchdog(lambda sentence: node.status.set(messages.WARN, sentence),
                                   watchdog.PATIENCE + self._loop.deadlines.period)
@@ -57,7 +58,8 @@ class Watch:
             for data in qos.waiting(self._node.command):
                 self._loop.on_command(data)
             self._question.repeat(monotonic())
-            self._insist(now)
+            if not self._stood_by(now):
+                self._insist(now)
         if self._loop.paced:
             self._keep_pace(now)
         else:
@@ -69,9 +71,25 @@ class Watch:
         settled, self._listeners = listeners == self._listeners, listeners
         if not absent and settled:
             self._loop.start(monotonic())
-        elif absent and now > run.discovery_timeout:
+        elif absent and now > run.discovery_timeout and not self.substitutes:
             self._node.finish(1, f'waited {run.discovery_timeout:g} s (run.discovery_timeout) for '
                                  f'{absent}')
+
+    @property
+    def substitutes(self) -> int:
+        """Number of nodes that stand by to command, where nobody does."""
+        return 0 if self.controllers else self._node.count_publishers(turn.STANDBY)
+
+    def _stood_by(self, now: float) -> bool:
+        """Return whether the run has no controller but somebody who may yet be one."""
+        idle = self.substitutes > 0
+        if idle:
+            self._asked = self._question.asked, now         # nobody is late
+            self._node.status.set(messages.OK, 'waiting for a controller; a node stands by')
+        elif self._idle:
+            self._loop.say_state()
+        self._idle = idle
+        return idle
 
     def _keep_pace(self, now: float):
         """Give up a listener that blocks for too long; wind up a timer that does not call."""
