@@ -12,11 +12,10 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String
 from std_srvs.srv import Trigger
 
-from dewing_sim import parameters
 from dewing_sim.errors import BadInput, DewingError
 from dewing_sim.files import check_free
 from dewing_sim.identity import Identity
-from dewing_sim.ros import codec, given_parameters, harness, qos
+from dewing_sim.ros import codec, harness, qos
 from dewing_sim.ros import messages as common
 from dewing_sim.ros.awake import Awake
 from dewing_sim.ros.rest import Rest
@@ -25,22 +24,14 @@ from dewing_sim.ros.turn import ASKED, Turn
 from dewing_sim.ros.watchdog import Watchdog
 from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
-from dewing_sysid.experiment import save_records
+from dewing_sysid.experiment import Record, save_records
 from dewing_sysid.identify import Identification, concerns, identify
-from dewing_sysid.settings import NODE_DEFAULTS, NodeSettings, Settings, shipped
+from dewing_sysid.parameters_node import settings_of
+from dewing_sysid.replay_node import Replay
+from dewing_sysid.settings import shipped
 
 WATCH_PERIOD = 0.1          # s, wall
 FAREWELL = 1.0              # s, longest wait for the last reset
-
-
-def settings_of(node: Node) -> tuple[Settings, NodeSettings]:
-    """Return the settings that the parameters of ``node`` describe, declared."""
-    own, changes = given_parameters.take(node, NodeSettings, Settings)
-    node_settings = parameters.from_mapping(NodeSettings, NODE_DEFAULTS | own)
-    settings = parameters.load('sysid', Settings, changes)
-    common.declare(node, settings, read_only=True)
-    common.declare(node, node_settings, read_only=True)
-    return settings, node_settings
 
 
 class SysidNode(Node):
@@ -64,6 +55,9 @@ class SysidNode(Node):
         self.status = Status(self, 'idle', self._values)
         self._watchdog = Watchdog(lambda sentence: self.status.set(common.WARN, sentence))
         self._connect()
+        if self.node_settings.begin == 'on_replay':
+            self._replay = Replay(self, lambda: self._identity, self._end,
+                                  lambda sentence: self._finish(1, sentence))
 
     reason = property(lambda self: self.status.sentence, doc='The sentence of the diagnostics.')
 
@@ -123,6 +117,8 @@ class SysidNode(Node):
     def _obstacle(self) -> str | None:
         if self._campaign:
             return 'experiments are already under way'
+        if self.node_settings.begin == 'on_replay':
+            return 'experiments are played, not made'
         if self._identity is None or not self._rest.there:
             return 'the simulator is not there'
         return self._turn.obstacle
@@ -182,21 +178,24 @@ class SysidNode(Node):
             return
         self._restore()
         self.status.set(common.OK, 'realising the model')
+        self._end(campaign.plan.records(campaign.outputs))
+
+    def _end(self, records: dict[str, Record]):
         try:
-            self._conclude(campaign)
+            self._conclude(records)
         except (DewingError, OSError) as error:
             self._finish(1, str(error))
 
-    def _conclude(self, campaign: Campaign):
-        """Identify, publish and save."""
-        records = campaign.plan.records(campaign.outputs)
+    def _conclude(self, records: dict[str, Record]):
+        """Identify, publish and save; what this node has saved before is written over."""
+        again = self.found is not None
         if self.node_settings.records:
-            save_records(self.node_settings.records, records, self._identity)
+            save_records(self.node_settings.records, records, self._identity, again)
         self.found = identify(records, self.settings, self._identity)
         self._announcement.publish(self.found)
         model = self.found.model
         if self.node_settings.output:
-            model.save(self.node_settings.output)
+            model.save(self.node_settings.output, again)
         fits = ', '.join(f'{name} {fit:.1f} %' for name, fit in model.fit['window'].items())
         doubts = concerns(self.found, self.settings)
         sentence = '; '.join([f'order {model.order} model: fit of {fits}', *doubts])

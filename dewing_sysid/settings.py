@@ -72,7 +72,9 @@ class NodeSettings:
 
     output: str = text('npz file of the model; it must not exist, none is written if empty')
     records: str = text('npz file of the experiments; none is written if empty')
-    begin: str = choice('when the experiments begin', 'at_start', 'on_request')
+    begin: str = choice(
+        'when the experiments begin; on_replay: none are made, the model is that of a bag that '
+        'is played', 'at_start', 'on_request', 'on_replay')
     afterwards: str = choice('what the node does with the model published', 'stay', 'exit')
     patience: float = real('s', 'wall time without a measurement after which the node gives up',
                            0.1, 1.0e6)

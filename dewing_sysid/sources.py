@@ -49,7 +49,16 @@ def from_bag(path: str | Path, run: int | None = None) -> tuple[dict[str, Record
     the baseline.  Raises `BadInput` if it is not, if messages are missing, if two runs could be
     the same one, or if there is no run ``run``.
     """
-    identity, measured, commanded, disturbances = _contents(path)
+    return from_runs(path, *_contents(path), run)
+
+
+def from_runs(path: str | Path, identity: Identity, measured: list[Samples],
+              commanded: list[Samples], disturbances: Disturbances, run: int | None = None,
+              ) -> tuple[dict[str, Record], Identity]:
+    """Return the records of runs of measurements and commands, as `from_bag` does.
+
+    ``path`` is the word for their origin in the sentences of errors.
+    """
     names = _names(measured[0])
     if len(measured) != len(commanded):
         raise BadInput(f'{path}: {len(measured)} runs of measurements do not fit '

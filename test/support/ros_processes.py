@@ -22,7 +22,8 @@ from dewing_sim.records import bag
 from dewing_sim.ros import harness
 
 MODULES = dict(simulator='dewing_sim.ros.node', controller='dewing_control.node',
-               recorder='dewing_sim.ros.recorder', loop='dewing_control.loop_node')
+               recorder='dewing_sim.ros.recorder', loop='dewing_control.loop_node',
+               sysid='dewing_sysid.node')
 PATIENCE = started.PATIENCE
 FAREWELL = 60.0             # s, for a process to end before it is killed
 
