@@ -51,6 +51,7 @@ class SysidNode(Node):
         self._identity, self._campaign = None, None
         self._latest, self._heard, self._shown = None, 0.0, -1.0
         self._wanted = self.node_settings.begin == 'at_start'
+        self.get_logger().info(f'begin: {self.node_settings.begin}')
         self._awake = Awake()
         self.status = Status(self, 'idle', self._values)
         self._watchdog = Watchdog(lambda sentence: self.status.set(common.WARN, sentence))
