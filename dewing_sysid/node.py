@@ -20,7 +20,7 @@ from dewing_sim.ros import messages as common
 from dewing_sim.ros.awake import Awake
 from dewing_sim.ros.rest import Rest
 from dewing_sim.ros.status import Status
-from dewing_sim.ros.turn import ASKED, Turn
+from dewing_sim.ros.turn import SOON, Turn
 from dewing_sim.ros.watchdog import Watchdog
 from dewing_sysid import messages, plan
 from dewing_sysid.campaign import Campaign
@@ -63,7 +63,7 @@ class SysidNode(Node):
     reason = property(lambda self: self.status.sentence, doc='The sentence of the diagnostics.')
 
     def _connect(self):
-        self._turn = Turn(self)
+        self._turn = Turn(self, self._wanted)
         self._progress = self.create_publisher(Float64, '~/progress', qos.EVENTS)
         self._announcement = messages.Announcement(self)
         self._rest = Rest(self, self._on_rest)
@@ -131,7 +131,6 @@ class SysidNode(Node):
         except BadInput as error:
             self._finish(1, str(error))
             return
-        self._turn.take()
         self._begin_run()
 
     def _begin_run(self):
@@ -211,7 +210,7 @@ class SysidNode(Node):
 
     def _on_start(self, _request, response):
         obstacle = self._obstacle()
-        self._wanted = obstacle == ASKED
+        self._wanted = obstacle in SOON
         response.success, response.message = self._wanted or not obstacle, obstacle or 'started'
         if not obstacle:
             self._begin()

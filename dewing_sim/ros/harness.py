@@ -233,8 +233,7 @@ def start_node(module: str, parameters: Mapping[str, Any], env: Mapping[str, str
     """Start ``module`` (with a `main`) as a process in a group of its own that ends with this one.
 
     However this process ends, killed even, the pipe to the other's standard input closes, and it
-    ends in order, as on SIGTERM. ``arguments`` are further ones of ROS, such as remappings;
-    ``options`` are those of `Popen`.
+    ends in order, as on SIGTERM. ``arguments`` are further ones of ROS, ``options`` of `Popen`.
     """
     arguments = ['--ros-args', *arguments]
     for name, value in parameters.items():

@@ -7,6 +7,8 @@ node that commands now and then offers it only in its turn; between turns it sta
 ``standby``, and a simulator without any controller then waits for one as long as it takes.
 """
 
+from time import monotonic
+
 from rclpy.node import Node
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
@@ -17,34 +19,40 @@ from dewing_sim.ros import qos
 
 STANDBY, RELEASE = 'standby', 'controller/release'
 ASKED = 'the controller is asked to give the wing up'
+SETTLING = 'listeners of command are waited for'
+SOON = (ASKED, SETTLING)
+SETTLED = 0.5               # s from the offer of command on: a recorder has subscribed to it
 
 
 class Turn:
     """The turn of a node that commands now and then; a controller is asked to give up its own."""
 
-    def __init__(self, node: Node):
-        """Stand by."""
-        self._node, self._command = node, None
+    def __init__(self, node: Node, at_once: bool):
+        """Stand by, or offer ``command`` already if the turn is to begin ``at_once``."""
+        self._node, self._command, self._taken = node, None, 0.0
         self._asked: Future | None = None
         self._release = node.create_client(SetBool, RELEASE)
         self._standby = node.create_publisher(String, STANDBY, qos.LATCHED)
         self._standby.publish(String(data=node.get_fully_qualified_name()))
+        if at_once:
+            self._take()
 
     @property
     def obstacle(self) -> str | None:
-        """Say who has the wing, asking for it if that can be done; None if nobody has it."""
+        """Say what the turn waits for, and do something about it; None if it may begin."""
         others = self._node.count_publishers('command') - (self._command is not None)
         if not others:
-            return None
+            self._take()
+            return SETTLING if monotonic() - self._taken < SETTLED else None
         if not self._release.service_is_ready():
             return 'another controller publishes commands: stop it first'
         if self._asked is None:
             self._asked = self._release.call_async(SetBool.Request(data=True))
         return ASKED
 
-    def take(self) -> None:
-        """Offer ``command``."""
+    def _take(self) -> None:
         if self._command is None:
+            self._taken = monotonic()
             self._command = self._node.create_publisher(JointState, 'command', qos.LOOP)
 
     def publish(self, data: bytes) -> None:

@@ -16,6 +16,7 @@ from dewing_sim import parameters
 from dewing_sim.linear.model import Model
 from dewing_sim.ros import harness
 from dewing_sim.ros.node import SimulatorNode
+from dewing_sim.ros.turn import ASKED, SETTLING
 from dewing_sysid.node import SysidNode
 
 SHORT = {'experiment.record': 1.2, 'fresh.record': 1.2, 'realisation.window': 1.2,
@@ -61,7 +62,7 @@ def test_an_idle_identification_neither_starts_nor_ends_a_run(stage):
     session, simulator, sysid = stage
     let_pass(session, 1.0)
     assert simulator.exit_status is None and simulator.lockstep.steps == 0
-    assert start(session) == 'started'
+    assert start(session) == SETTLING
     session.spin_until(lambda: sysid.found is not None, PATIENCE)
     let_pass(session, 1.0)
     assert simulator.exit_status is None
@@ -75,7 +76,7 @@ def test_a_controller_gives_the_wing_up_for_the_experiments_and_takes_it_again(s
     session, simulator, sysid = stage
     controller = session.add(ControllerNode)
     session.spin_until(lambda: simulator.lockstep.steps > 20, PATIENCE)
-    assert start(session) in ('started', 'the controller is asked to give the wing up')
+    assert start(session) in (ASKED, SETTLING)
     session.spin_until(lambda: controller.status.sentence == RELEASED, PATIENCE)
     session.spin_until(lambda: sysid.found is not None, PATIENCE)
     before = simulator.lockstep.steps
