@@ -7,7 +7,7 @@ exact modes, without any identification. A wing that sheds or flutters has a ste
 which --base steady solves for, followed up from 4 degrees. Frequencies up to 1/(2 dt) are told
 apart. residual and check say how well a mode satisfies its equation, in the Krylov space and by
 one step. membrane is its share of the kinetic energy of membrane and air, in plane the share of
-the membrane's that is along the chord.
+the membrane's that is along the chord; modes that are mostly that are listed apart.
 --out gets modes.npz and a figure of each mode.
 """
 
@@ -55,6 +55,7 @@ def run(arguments: argparse.Namespace) -> None:
     with bar('modes', 'vectors', arguments.quiet) as show:
         found = modes.find(wing, base, arguments.period, arguments.vectors, arguments.count, show)
     metrics = {'modes': [mode.metrics() for mode in found.modes],
+               'in_plane_modes': [mode.metrics() for mode in found.in_plane],
                'base': _describe(wing, base, found), 'unsettled': found.unsettled,
                'vectors': found.vectors, 'seconds': perf_counter() - began}
     if arguments.out:
@@ -137,8 +138,11 @@ def print_table(metrics: dict[str, Any]) -> None:
     print(f"steady wing: Cl {base['cl']:.4f}, y* {base['y_star']:.4f} at x/c {base['x_c']:.3f}, "
           f"{base['voltage']:g} V ({base['engine']} {base['grid']}, {base['time_step']:g} s)")
     print(''.join(f'{title:>14}' for title, _form in COLUMNS.values()))
-    for row in metrics['modes']:
-        print(''.join(f'{row[key]:14{form}}' for key, (_title, form) in COLUMNS.items()))
+    for name, rows in (('', metrics['modes']), ('in the plane', metrics['in_plane_modes'])):
+        if name and rows:
+            print(name)
+        for row in rows:
+            print(''.join(f'{row[key]:14{form}}' for key, (_title, form) in COLUMNS.items()))
     if metrics['unsettled']:
         print(f"{metrics['unsettled']} values that are not damped more did not settle within "
               f"{metrics['vectors']} vectors: slow modes of the wake want a longer --period")

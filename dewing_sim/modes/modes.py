@@ -19,6 +19,7 @@ from dewing_sim.modes.propagator import KICK, Propagator, of_kick
 from dewing_sim.state import State
 from dewing_sim.wing import Wing
 
+IN_PLANE = 0.5             # share of all kinetic energy beyond which a mode is one of the plane
 OUTPUTS = ('camber_mean', 'cl')
 CONVERGED = 1.0e-3          # largest residual of a mode that is listed
 SAME = 0.05                 # how far one step may disagree with N: |mu_1 phi - P_1 phi|, relative
@@ -57,9 +58,13 @@ class Mode:
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """The least damped modes of a base, and how many more did not settle."""
+    """The least damped modes of a base, those within the sheet's plane apart.
+
+    Nothing but the time scheme damps the latter, and neither V^2 nor the air moves them much.
+    """
 
     modes: list[Mode]
+    in_plane: list[Mode]
     propagator: Propagator
     vectors: int
     unsettled: int              # less damped than the last listed, with too large a residual
@@ -76,16 +81,18 @@ def find(wing: Wing, base: State, period: float = 1.0e-3, vectors: int = 130, co
     propagator, kick = of_kick(wing, base, steps)
     ritz = arnoldi(propagator, kick, vectors, progress)
     one = replace(propagator, steps=1)
-    found, unsettled = [], 0
+    found, in_plane, unsettled = [], [], 0
     for k in range(len(ritz.values)):
         if ritz.values[k].imag < 0.0 or len(found) == count:
             continue
         mode = _mode(propagator, one, ritz, k) if ritz.residuals[k] < CONVERGED else None
-        if mode is not None and mode.check < SAME:
-            found.append(mode)
-        else:
+        if mode is None or mode.check >= SAME:
             unsettled += 1
-    return Modes(found, propagator, len(ritz.values), unsettled)
+        elif mode.membrane_share * mode.in_plane_share > IN_PLANE:
+            in_plane.append(mode)
+        else:
+            found.append(mode)
+    return Modes(found, in_plane, propagator, len(ritz.values), unsettled)
 
 
 def _mode(propagator: Propagator, one: Propagator, ritz: Ritz, k: int) -> Mode:
