@@ -43,6 +43,8 @@ LONG = (
     "make test PYTEST_OPTIONS='test/sim/ros/test_examples.py'",
     'dewing material --case paper --out docs/images/material/paper --force',
     'dewing paper --out out/paper',
+    'dewing modes --engine conformal --grid realtime --dt 5.0e-4 --set numerics.trim_time=60.0'
+    ' --count 4 --out modes --force',
     'python -m dewing_sim.prepare', 'dewing_simulator --ros-args -r __ns:=/wing1 &',
     'dewing_controller &', 'dask scheduler --port 8786 &',
 )
@@ -54,6 +56,7 @@ LONG_IN_TEXT = (
     'python scripts/ros_reference.py', 'python scripts/outputs_table.py',
     'python benchmarks/roundtrip.py', 'python benchmarks/soak.py',
     'python benchmarks/cold_start.py', 'make kernels-wheel',
+    'dewing modes --set numerics.trim_time=60.0',
     'dewing plate --alpha 4', 'dewing simulate --case paper', 'dewing verify --quick',
     'dewing verify --out docs --force', 'dewing material --coupled',
     'dewing bench --presets standard --set membrane.element=solid --set membrane.elements=400',
@@ -65,7 +68,7 @@ LONG_IN_TEXT = (
     'dewing compare --scenarios target_097 --controllers pid_tuned,lqg,mpc --duration 1.0'
     ' --jobs 1',
 )
-# Commands within the text that are not executed as they stand, and why.
+# Commands in the text, and first lines of blocks, that are not executed as they stand, and why.
 ELSEWHERE = {
     'make long': 'executes all others',
     'make links': 'needs the network',
@@ -73,6 +76,8 @@ ELSEWHERE = {
         'test/cli/test_plot.py does, with fewer frames',
     'dewing identify --from run.mcap':
         'test/sysid/test_sysid_node.py does, with a recorded campaign',
+    'dewing_controller & dewing_recorder --ros-args -p output:=answers.mcap &':
+        'test/control/test_replay.py does, with a player of its own',
 }
 # Blocks that need a system ROS; `make long` executes them where there is one.
 SYSTEM_ROS = ('source /opt/ros/jazzy/setup.bash', 'ros2 run dewing', 'ros2 launch dewing')
@@ -97,9 +102,11 @@ class Block(NamedTuple):
 
     @property
     def where(self) -> str:
-        """Who executes a block of shell: 'test', 'long', 'ros', 'nodes' or, if nobody, ''."""
+        """Who executes a shell block: 'test', 'long', 'ros', 'nodes', 'elsewhere', or '': none."""
         if self.lines[0] in LONG:
             return 'long'
+        if self.lines[0] in ELSEWHERE:
+            return 'elsewhere'
         if self.lines[0].startswith(SYSTEM_ROS):
             return 'ros'
         if all(line.startswith(BESIDE_NODES) for line in self.lines):
