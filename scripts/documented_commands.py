@@ -55,6 +55,7 @@ LONG_IN_TEXT = (
     'python scripts/gallery.py', 'python scripts/parameter_table.py',
     'python scripts/ros_reference.py', 'python scripts/outputs_table.py',
     'python benchmarks/roundtrip.py', 'python benchmarks/soak.py',
+    'python benchmarks/soak_realtime.py',
     'python benchmarks/cold_start.py', 'make kernels-wheel',
     'dewing modes --set numerics.trim_time=60.0',
     'dewing plate --alpha 4', 'dewing simulate --case paper', 'dewing verify --quick',
@@ -78,6 +79,8 @@ ELSEWHERE = {
         'test/sysid/test_sysid_node.py does, with a recorded campaign',
     'dewing_controller & dewing_recorder --ros-args -p output:=answers.mcap &':
         'test/control/test_replay.py does, with a player of its own',
+    'dewing_sysid --ros-args -p begin:=on_replay -p output:=played.npz &':
+        'test/control/test_sysid_replay.py does, with a player of its own',
 }
 # Blocks that need a system ROS; `make long` executes them where there is one.
 SYSTEM_ROS = ('source /opt/ros/jazzy/setup.bash', 'ros2 run dewing', 'ros2 launch dewing')

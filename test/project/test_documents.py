@@ -33,7 +33,7 @@ def name(page):
 # Commands and Python.
 
 def test_every_block_says_what_it_is():
-    assert {block.language for block in BLOCKS} <= {'sh', 'python', 'text'}
+    assert {block.language for block in BLOCKS} <= {'sh', 'python', 'text', 'console'}
     for page, prose in PROSE.items():
         assert not re.search(r'^ *```', prose, re.M), page
         assert not re.search(r'\n\n {4}(dewing|make|python|ros2|pip)\b', prose), page
