@@ -76,7 +76,7 @@ def fails(capsys, arguments, status: int = 2) -> str:
     (['simulate', '--voltage', 'high'], "invalid float value: 'high'"),
     (['simulate', '--voltage', '1', '--controller', 'x'], 'not allowed with argument --voltage'),
     (['simulate', '--controller', 'missing.yaml'], 'missing.yaml: no such file'),
-    (['simulate', '--controller', 'paper'], 'is not a parameter'),
+    (['simulate', '--controller', 'paper'], 'are expected below /** or /**/controller'),
     (['simulate', '--disturbance', 'gust'], '--disturbance gust is not known; one of none, fig5'),
     (['simulate', '--grid', 'coarse'], "numerics.grid = 'coarse' is out of range"),
     (['simulate', '--engine', 'panel'], "numerics.engine = 'panel' is out of range"),
