@@ -21,7 +21,7 @@ from dewing_sysid.node import SysidNode
 
 SHORT = {'experiment.record': 1.2, 'fresh.record': 1.2, 'realisation.window': 1.2,
          'realisation.order': 6, 'output': '', 'begin': 'on_request'}
-HASTY = {'run.discovery_timeout': 0.3, 'run.command_timeout': 0.2, 'run.hold_timeout': 0.3}
+HASTY = {'run.discovery_timeout': 0.3, 'run.command_timeout': 0.2, 'run.hold_timeout': 2.0}
 
 
 @pytest.fixture
@@ -60,11 +60,11 @@ def let_pass(session, seconds):
 
 def test_an_idle_identification_neither_starts_nor_ends_a_run(stage):
     session, simulator, sysid = stage
-    let_pass(session, 1.0)
+    let_pass(session, 3.0)
     assert simulator.exit_status is None and simulator.lockstep.steps == 0
     assert start(session) == SETTLING
     session.spin_until(lambda: sysid.found is not None, PATIENCE)
-    let_pass(session, 1.0)
+    let_pass(session, 3.0)
     assert simulator.exit_status is None
     assert simulator.reason == 'waiting for a controller; a node stands by'
     session.add(ControllerNode)
