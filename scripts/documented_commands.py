@@ -69,7 +69,7 @@ LONG_IN_TEXT = (
     'dewing compare --scenarios target_097 --controllers pid_tuned,lqg,mpc --duration 1.0'
     ' --jobs 1',
 )
-# Commands in the text, and first lines of blocks, that are not executed as they stand, and why.
+# Commands within the text that are not executed as they stand, and why.
 ELSEWHERE = {
     'make long': 'executes all others',
     'make links': 'needs the network',
@@ -77,6 +77,9 @@ ELSEWHERE = {
         'test/cli/test_plot.py does, with fewer frames',
     'dewing identify --from run.mcap':
         'test/sysid/test_sysid_node.py does, with a recorded campaign',
+}
+# First lines of blocks that are executed elsewhere, and where.
+BLOCKS_ELSEWHERE = {
     'dewing_controller & dewing_recorder --ros-args -p output:=answers.mcap &':
         'test/control/test_replay.py does, with a player of its own',
     'dewing_sysid --ros-args -p begin:=on_replay -p output:=played.npz &':
@@ -108,7 +111,7 @@ class Block(NamedTuple):
         """Who executes a shell block: 'test', 'long', 'ros', 'nodes', 'elsewhere', or '': none."""
         if self.lines[0] in LONG:
             return 'long'
-        if self.lines[0] in ELSEWHERE:
+        if self.lines[0] in BLOCKS_ELSEWHERE:
             return 'elsewhere'
         if self.lines[0].startswith(SYSTEM_ROS):
             return 'ros'
