@@ -41,9 +41,10 @@ def stress(axes, curves: Curves):
 def tension(axes, curves: Curves):
     """Draw the tension of the flat membrane against the voltage."""
     axes.plot(curves.voltage, curves.tension, 'k')
-    axes.plot(curves.slack_voltage, 0.0, 'ro', label=f'slack at {curves.slack_voltage:.0f} V')
     axes.set(xlabel='voltage [V]', ylabel='tension [N/m]')
-    axes.legend()
+    if curves.slack_voltage is not None:
+        axes.plot(curves.slack_voltage, 0.0, 'ro', label=f'slack at {curves.slack_voltage:.0f} V')
+        axes.legend()
 
 
 def free_sheet(axes, curves: Curves):

@@ -33,7 +33,7 @@ class Curves:
 
     stretch: np.ndarray
     stress: dict[str, np.ndarray] | None    # mode -> passive Cauchy stress along the stretch, Pa
-    voltage: np.ndarray | None          # V, up to the loss of tension
+    voltage: np.ndarray                 # V, up to the loss of tension, or else to the limit
     tension: np.ndarray | None          # N/m, of the flat membrane
     slack_voltage: float | None
     free_stretch: np.ndarray            # equal biaxial, no load
@@ -87,7 +87,7 @@ def of_section(section: parameters.Membrane, pressure: float, voltage_limit: flo
 
     slack = attempt('loss of tension', lambda: float(np.sqrt(
         sheet.loss_of_tension_v_squared(prestretch))))
-    voltage = None if slack is None else np.linspace(0.0, slack, POINTS)
+    voltage = np.linspace(0.0, voltage_limit if slack is None else slack, POINTS)
     stretch = np.linspace(1.0, 0.95 * min(_reach(elastomer, limits.equibiaxial),
                                           _reach(elastomer, limits.plane_strain)), POINTS)
     free = np.geomspace(1.0, 0.999 * _reach(elastomer, limits.equibiaxial), POINTS)
@@ -99,7 +99,7 @@ def of_section(section: parameters.Membrane, pressure: float, voltage_limit: flo
     return Curves(
         stretch=stretch, stress=attempt('stress', lambda: _stresses(elastomer, stretch)),
         voltage=voltage,
-        tension=None if voltage is None else attempt('tension', lambda: np.array(
+        tension=attempt('tension', lambda: np.array(
             [sheet.respond([prestretch], v * v).tension[0] for v in voltage])),
         slack_voltage=slack, free_stretch=free,
         free_voltage=attempt('free sheet', lambda: (
