@@ -4,7 +4,8 @@
 
 A first run of some seconds of wall time asks for simulated time as fast as that and finds the
 largest rate that the machine holds; the long one flies at that rate, at most at 1. Fails if a run
-diverges, or if the camber leaves the target by more than 5 % after the first tenth.
+diverges, or if the camber of the steady wing leaves the target by more than 5 % after the first
+tenth. At 8 degrees the wing sheds, and how far its camber swings is only told.
 """
 
 import argparse
@@ -17,11 +18,10 @@ import numpy as np
 from dewing_control.settings import ControllerSettings
 from dewing_sim import parameters
 
-CASES = ('realtime', 'realtime_alpha8')
+CASES = {'realtime': 0.05, 'realtime_alpha8': np.inf}    # and how far the camber may wander
 CONTROLLER = 'controller_realtime'
 PROBE = 1.0                 # s, simulated
 RESERVE = 0.9               # of the largest rate found
-WANDER = 0.05               # of the target
 PATIENCE = 1.0e5            # s
 
 
@@ -60,24 +60,26 @@ def main() -> int:
     """Fly both wings; print what was found and return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--minutes', type=float, default=10.0,
-                        help='simulated time of each wing (default: 10)')
+                        help='wall time of each wing (default: 10)')
+    parser.add_argument('--cases', nargs='+', choices=CASES, default=list(CASES),
+                        help='wings (default: both)')
     arguments = parser.parse_args()
     target = parameters.load(CONTROLLER, ControllerSettings).reference.target
     failed = False
-    for case in CASES:
+    for case in arguments.cases:
         _, _, largest = fly(case, PROBE, 1.0)
         if not largest:
             raise SystemExit(f'{case}: no second long enough to find the rate')
         rate = 1.0 if largest >= 1.0 else RESERVE * largest
         print(f'{case}: the machine holds {largest:.2f}; flown at {rate:.2f}', flush=True)
-        simulator, camber, _ = fly(case, 60.0 * arguments.minutes, rate)
+        simulator, camber, _ = fly(case, 60.0 * arguments.minutes * rate, rate)
         held = camber[len(camber) // 10:] / target - 1.0
         wander = float(np.max(np.abs(held))) if held.size else np.inf
         lockstep = simulator.lockstep
         print(f'{case}: {simulator.reason}; {lockstep.steps} steps, {lockstep.late} answers late, '
               f'{simulator.loop.deadlines.missed} deadlines missed, camber within '
               f'{100.0 * wander:.2f} % of the target', flush=True)
-        failed |= bool(simulator.exit_status) or wander > WANDER
+        failed |= bool(simulator.exit_status) or wander > CASES[case]
     return int(failed)
 
 

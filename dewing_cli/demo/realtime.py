@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The wing for real time under its controller: two processes, as fast as they go together."""
 
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from dewing_control.settings import ControllerSettings
 from dewing_control.trial.closed_loop import controller
 from dewing_sim import parameters
 from dewing_sim.build import build_wing
+from dewing_sim.errors import RunFailed
 from dewing_sim.inputs.disturbance import DISTURBANCES
 from dewing_sim.machine.signals import Stop
 from dewing_sim.parameters import Case
@@ -19,6 +21,7 @@ from dewing_sim.ros.onlooker import Onlooker
 
 NAME = 'realtime'           # of the case and of the controller
 SAMPLED = 100.0             # Hz, of the camber that is looked at
+PATIENCE = 10.0             # s, for the last words of a simulator that has ended
 
 
 def fly(duration: float, quiet: bool, stop: Stop) -> dict[str, Any]:
@@ -43,7 +46,9 @@ def fly(duration: float, quiet: bool, stop: Stop) -> dict[str, Any]:
         with bar('real time', quiet=quiet) as show:
             nodes.wait(NAME, simulator, session, stop,
                        lambda: show(onlooker.time, duration, onlooker.time))
-        while not stop.asked and onlooker.time < duration - 0.5 * identity.dt:
+        until = monotonic() + PATIENCE
+        while not (stop.asked or onlooker.time > duration - 0.5 * identity.dt
+                   or monotonic() > until):
             session.executor.spin_once(timeout_sec=0.1)     # its last words, which it delivered
     return _figures(onlooker, identity.passive('camber_mean'), duration)
 
@@ -52,10 +57,12 @@ def _figures(onlooker: Onlooker, passive: float, duration: float) -> dict[str, A
     late = round(SAMPLED * min(1.0, 0.5 * duration))
     camber = np.array(onlooker.camber[-late:] or [passive]) / passive - 1.0
     said = onlooker.said
+    if 'rtf' not in said:
+        raise RunFailed('real time: the simulator reached its end, but nothing that it reported '
+                        'has arrived')
     return {'case': NAME, 'mode': 'lockstep', 'duration': onlooker.time,
-            **{name: float(said[name]) for name in ('rtf', 'ms_per_step', 'overhead_ms_per_step')
-               if name in said},
-            **{name: int(said[name]) for name in ('steps', 'clipped') if name in said},
+            **{name: float(said[name]) for name in ('rtf', 'ms_per_step', 'overhead_ms_per_step')},
+            **{name: int(said[name]) for name in ('steps', 'clipped')},
             'camber_mean': float(camber.mean()), 'camber_amplitude': 0.5 * float(np.ptp(camber))}
 
 
