@@ -59,6 +59,9 @@ class SysidNode(Node):
         if self.node_settings.begin == 'on_replay':
             self._replay = Replay(self, lambda: self._identity, self._end,
                                   lambda sentence: self._finish(1, sentence))
+            return
+        self._measurement = self.create_subscription(
+            JointState, 'measurement', self._on_measurement, qos.LATEST, raw=True)
 
     reason = property(lambda self: self.status.sentence, doc='The sentence of the diagnostics.')
 
@@ -70,8 +73,6 @@ class SysidNode(Node):
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
         self._measurements = codec.Reader('position')
         self._layout = codec.layout(common.COMMANDED, 'effort')
-        self._measurement = self.create_subscription(
-            JointState, 'measurement', self._on_measurement, qos.LATEST, raw=True)
         self.create_service(Trigger, '~/start', self._on_start)
         self.create_service(Trigger, '~/stop', self._on_stop)
         steady = Clock(clock_type=ClockType.STEADY_TIME)

@@ -19,7 +19,7 @@ from dewing_sysid import sources
 from dewing_sysid.disturbed import Disturbances
 from dewing_sysid.experiment import Record
 
-QUIET = 2.0                 # s without a message: the bag is at its end
+QUIET = 8.0                 # s without a message: the bag is at its end. What DDS lost comes within 3 s
 PERIOD = 0.1                # s
 
 
@@ -32,8 +32,10 @@ class Replay:
         self._identity, self._over, self._failed = identity, over, failed
         self._heard: float | None = None
         self._begin()
-        for topic in (*self._splitters, 'inputs'):
-            node.create_subscription(JointState, topic, self._keeper(topic), qos.LOOP)
+        keepers = {topic: self._keeper(topic) for topic in (*self._splitters, 'inputs')}
+        self._subscriptions = [
+            (node.create_subscription(JointState, topic, keep, qos.LOOP), keep)
+            for topic, keep in keepers.items()]
         node.create_timer(PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _begin(self):
@@ -55,6 +57,9 @@ class Replay:
 
     def _look(self):
         """Conclude when nothing has come for a while."""
+        for subscription, keep in self._subscriptions:
+            for message in qos.waiting(subscription):       # of which nobody told
+                keep(message)
         if self._heard is None or monotonic() - self._heard < QUIET:
             return
         self._heard = None

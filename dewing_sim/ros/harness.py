@@ -41,15 +41,6 @@ from dewing_sim.ros import logs, usage
 
 SPIN = 0.2                      # s, longest time without a look at signals and conditions
 DOMAINS = range(1, 102)         # usable on every system without clashing with ephemeral ports
-CHILD = """
-import os, signal, sys, threading
-def follow():
-    os.read(0, 1)               # returns when the parent has ended
-    os.kill(os.getpid(), signal.SIGTERM)
-threading.Thread(target=follow, daemon=True).start()
-from {module} import main
-sys.exit(main())
-"""
 DOMAIN_PORT = 22119             # of the domain coordinator of ROS: lock by binding port + domain
 
 
@@ -232,13 +223,12 @@ def start_node(module: str, parameters: Mapping[str, Any], env: Mapping[str, str
                arguments: Sequence[str] = (), **options) -> subprocess.Popen:
     """Start ``module`` (with a `main`) as a process in a group of its own that ends with this one.
 
-    However this process ends, killed even, the pipe to the other's standard input closes, and it
-    ends in order, as on SIGTERM. ``arguments`` are further ones of ROS, ``options`` of `Popen`.
+    See `child`. ``arguments`` are further ones of ROS, ``options`` of `Popen`.
     """
     arguments = ['--ros-args', *arguments]
     for name, value in parameters.items():
         arguments += ['-p', f'{name}:={_yaml_word(value)}']
-    return subprocess.Popen([sys.executable, '-c', CHILD.format(module=module), *arguments],
+    return subprocess.Popen([sys.executable, '-m', 'dewing_sim.ros.child', module, *arguments],
                             env=dict(env), start_new_session=True, stdin=subprocess.PIPE,
                             **options)
 

@@ -10,6 +10,8 @@ from rclpy.node import Node
 from dewing_sim.records import mcap_file
 from dewing_sim.ros import harness, qos
 
+SETTLE = 0.5            # s: a writer knows of its readers before they know of it
+
 
 class Player(Node):
     """Publishes the messages of ``path`` on ``topics``; the case is offered latched, as it was."""
@@ -31,6 +33,7 @@ class Player(Node):
 
     def play(self, pause=0.006):
         """Publish everything as fast as it is taken, with a pause (s) after the case only."""
+        time.sleep(SETTLE)
         for topic, _, data in self.messages:
             while not qos.publish(self.out[topic], data):
                 pass

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulated time and the names of several wings in one domain."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
@@ -99,6 +101,7 @@ def test_frames_carry_the_namespace_of_another_wing(namespace, prefix):
     line = np.array([0.0, 0.5, 1.0])
     outputs = Outputs(time=0.0, v_squared=0.0, cl=0.3, cd=0.1, cm=0.0, x=line, y=0.0 * line,
                       pressure_jump=line, tension=1.0)
+    lockstep = SimpleNamespace(outputs=outputs, time=outputs.time)
     run = parameters.load('simulator', SimulatorSettings).run
     frames = {}
     with harness.reserved_domain() as domain, harness.Session(domain) as session:
@@ -108,7 +111,7 @@ def test_frames_carry_the_namespace_of_another_wing(namespace, prefix):
             wing.create_subscription(kind, topic, lambda message, topic=topic: frames.update(
                 {topic: message.header.frame_id}), qos.EVENTS)
         session.spin_until(lambda: telemetry.listeners == 2, PATIENCE)
-        telemetry.publish(outputs)
+        telemetry.publish(lockstep)
         session.spin_until(lambda: len(frames) == 2, PATIENCE)
     assert frames == {'membrane': f'{prefix}wing', 'loads': f'{prefix}wind'}
 
