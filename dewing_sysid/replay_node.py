@@ -19,7 +19,7 @@ from dewing_sysid import sources
 from dewing_sysid.disturbed import Disturbances
 from dewing_sysid.experiment import Record
 
-QUIET = 8.0                 # s without a message: the bag is at its end. What DDS lost comes within 3 s
+QUIET = 8.0                 # s without a message: the end. What DDS lost comes within 3 s
 PERIOD = 0.1                # s
 
 
