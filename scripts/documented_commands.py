@@ -61,7 +61,8 @@ LONG_IN_TEXT = (
     'dewing plate --alpha 4', 'dewing simulate --case paper', 'dewing verify --quick',
     'dewing verify --out docs --force', 'dewing material --coupled',
     'dewing bench --presets standard --set membrane.element=solid --set membrane.elements=400',
-    'dewing bench --engine conformal', 'dewing tune --kind lqg', 'dewing tune --noise-gain 40',
+    'dewing bench --engine conformal', 'dewing bench --graph',
+    'dewing tune --kind lqg', 'dewing tune --noise-gain 40',
     'dewing compare --duration 0.4', 'dewing simulate --case realtime --duration 1',
     'dewing tune --case realtime --delay 1 --generations 40',
     'dewing compare --case realtime --settings realtime'
