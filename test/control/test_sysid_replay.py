@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from bag_player import Player
 from ros_processes import PATIENCE, graph
-from synthetic_plant import SyntheticPlant
+from synthetic_plant import save_model
 
-from dewing_sim import parameters
 from dewing_sim.linear.model import Model
 from dewing_sim.ros import harness
 from dewing_sim.ros.node import SimulatorNode
@@ -23,13 +22,7 @@ PLAYED = ('/dewing/case', '/dewing/measurement', '/dewing/command')
 @pytest.fixture
 def campaign(tmp_path):
     """Return the bag of a campaign on a linear wing, and the model that was found."""
-    plant = SyntheticPlant()
-    outputs = plant.observe(plant.rest())
-    names = ('camber_mean', 'camber_max', 'cl')
-    Model(*plant.matrices, np.zeros((3, 1)), plant.dt, names,
-          np.array([getattr(outputs, name) for name in names]), plant.v_squared_slack,
-          v_squared_max=1250.0**2, case_yaml=parameters.to_yaml(parameters.load('paper')),
-          ).save(tmp_path / 'plant.npz')
+    save_model(tmp_path / 'plant.npz')
     with harness.reserved_domain() as domain, harness.Session(domain) as session:
         recorder = session.add(RecorderNode, {'output': str(tmp_path / 'run.mcap')})
         session.add(SimulatorNode, {

@@ -4,16 +4,13 @@
 
 import time
 
-import numpy as np
 import pytest
 from rclpy.node import Node
 from ros_processes import PATIENCE
 from std_srvs.srv import Trigger
-from synthetic_plant import SyntheticPlant
+from synthetic_plant import save_model
 
 from dewing_control.node import RELEASED, ControllerNode
-from dewing_sim import parameters
-from dewing_sim.linear.model import Model
 from dewing_sim.ros import harness
 from dewing_sim.ros.node import SimulatorNode
 from dewing_sim.ros.turn import ASKED, SETTLING
@@ -27,13 +24,7 @@ HASTY = {'run.discovery_timeout': 0.3, 'run.command_timeout': 0.2, 'run.hold_tim
 @pytest.fixture
 def stage(tmp_path):
     """Return a session, a hasty simulator of a linear wing, and an idle identification."""
-    plant = SyntheticPlant()
-    outputs = plant.observe(plant.rest())
-    names = ('camber_mean', 'camber_max', 'cl')
-    Model(*plant.matrices, np.zeros((3, 1)), plant.dt, names,
-          np.array([getattr(outputs, name) for name in names]), plant.v_squared_slack,
-          v_squared_max=1250.0**2, case_yaml=parameters.to_yaml(parameters.load('paper')),
-          ).save(tmp_path / 'plant.npz')
+    save_model(tmp_path / 'plant.npz')
     with harness.reserved_domain() as domain, harness.Session(domain) as session:
         sysid = session.add(SysidNode, SHORT)
         settings = {'run.plant': 'reduced', 'model': str(tmp_path / 'plant.npz'),

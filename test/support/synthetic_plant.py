@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
+from dewing_sim import parameters
 from dewing_sim.errors import Slack
 from dewing_sim.inputs.base import Inputs
+from dewing_sim.linear.model import Model
 from dewing_sim.plant import Outputs
 
 FREQUENCIES = (72.0, 172.0, 272.0)      # Hz, the paper's wing in air
@@ -75,3 +77,14 @@ class SyntheticPlant:
         return Outputs(time=number * self.dt, v_squared=v_squared, cl=0.395 + lift, cd=0.064,
                        cm=-0.1, camber_mean=1.8e-5 + mean, camber_max=2.7e-5 + crest,
                        camber_max_position=0.394, tension=1.2)
+
+
+def save_model(path) -> None:
+    """Write the plant as a linear model, for the reduced plant of a simulator node."""
+    plant = SyntheticPlant()
+    outputs = plant.observe(plant.rest())
+    names = ('camber_mean', 'camber_max', 'cl')
+    Model(*plant.matrices, np.zeros((3, 1)), plant.dt, names,
+          np.array([getattr(outputs, name) for name in names]), plant.v_squared_slack,
+          v_squared_max=1250.0**2, case_yaml=parameters.to_yaml(parameters.load('paper')),
+          ).save(path)

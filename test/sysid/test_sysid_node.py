@@ -14,7 +14,7 @@ from ros_processes import PATIENCE
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
 from std_srvs.srv import Trigger
-from synthetic_plant import SyntheticPlant
+from synthetic_plant import save_model
 from trajectory_msgs.msg import JointTrajectory
 
 from dewing_sim import parameters
@@ -40,14 +40,7 @@ SHORT = {'experiment.record': 1.2, 'fresh.record': 1.2, 'realisation.window': 1.
 @pytest.fixture
 def model(tmp_path):
     """Return the file of a linear wing that says which case it is."""
-    plant = SyntheticPlant()
-    a, b, c = plant.matrices
-    outputs = plant.observe(plant.rest())
-    names = ('camber_mean', 'camber_max', 'cl')
-    Model(a, b, c, np.zeros((3, 1)), plant.dt, names,
-          np.array([getattr(outputs, name) for name in names]), plant.v_squared_slack,
-          v_squared_max=1250.0**2, case_yaml=parameters.to_yaml(parameters.load('paper')),
-          ).save(tmp_path / 'plant.npz')
+    save_model(tmp_path / 'plant.npz')
     return str(tmp_path / 'plant.npz')
 
 
