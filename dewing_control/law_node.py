@@ -19,6 +19,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from dewing_control.answers import Answers
+from dewing_control.audience import Audience
 from dewing_control.law.base import Command
 from dewing_control.law.supervisor import Controller, Supervisor
 from dewing_control.settings import ControllerSettings
@@ -57,7 +58,7 @@ class LawNode(Node, ABC):
         self.answers: Answers | None = None
         self.exit_status: int | None = None
         self.reason = ''
-        self._attended = False                      # all listeners of command were there
+        self._audience = Audience()
         self.status = Status(self, 'waiting for the case', self._values)
         self._command = self.create_publisher(JointState, 'command', qos.LOOP)
         self.create_subscription(String, 'case', self._on_case, qos.LATCHED)
@@ -112,12 +113,7 @@ class LawNode(Node, ABC):
 
     def _absent(self) -> int:
         """Return how many listeners of command are waited for, none once all have been there."""
-        if not self._attended:
-            wanted = self.settings.command.subscribers
-            absent = max(wanted - self._command.get_subscription_count(), 0)
-            self._attended = not absent
-            return absent
-        return 0
+        return self._audience.absent(self._command, self.settings.command.subscribers)
 
     def _watch(self):
         """Look for a measurement that nobody told of, and say what is waited for."""

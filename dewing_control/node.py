@@ -12,6 +12,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
+from dewing_control.audience import Audience
 from dewing_control.settings import ControllerSettings
 from dewing_control.state_messages import StateTopic
 from dewing_control.trial.closed_loop import controller, same_memory
@@ -57,7 +58,7 @@ class ControllerNode(Node):
         self._state = StateTopic(self)
         self.create_service(SetBool, '~/enable', self._on_enable)
         self.create_service(SetBool, '~/release', self._on_release)
-        self._attended = False                      # all listeners of command were there
+        self._audience = Audience()
         self._heard = False                         # a measurement came in the last second
         self.create_timer(1.0, self._watch, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -103,12 +104,9 @@ class ControllerNode(Node):
 
     def _absent(self) -> int:
         """Return how many listeners of command are waited for, none once all have been there."""
-        if not self._attended and self._command is not None:
-            wanted = self.settings.command.subscribers
-            absent = max(wanted - self._command.get_subscription_count(), 0)
-            self._attended = not absent
-            return absent
-        return 0
+        if self._command is None:
+            return 0
+        return self._audience.absent(self._command, self.settings.command.subscribers)
 
     def _watch(self):
         """Look for a measurement that nobody told of, and say what is waited for."""
@@ -169,7 +167,7 @@ class ControllerNode(Node):
             self._command = None
         elif not request.data and self._command is None:
             self._command = self.create_publisher(JointState, 'command', qos.LOOP)
-            self._attended = False
+            self._audience = Audience()
         self._memory, self._stamp = None, -1
         self._say_running()
         response.success, response.message = True, 'released' if request.data else 'taken again'
